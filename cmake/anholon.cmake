@@ -1,16 +1,15 @@
-# The functions CMakeLists.txt is written in.
+# The functions that CMakeLists.txt uses.
 
 # anholon_layer(name [DEPENDS layers...] [LINKS targets...] [PRIVATE_LINKS targets...]
 #               [SOURCES generated...] [EXCLUDE file names...] [ALONE file names...] [PRECOMPILED header])
 #
-# Static library anholon_<name> from src/<name>/**/*.cpp; INTERFACE if there are only headers.
-# Files are compiled in batches (ANHOLON_UNITY); those of ALONE have local names that others have, too.
-# A layer without files makes no target; whoever depends on it gets what it depended on, so the
-# chain below a missing layer is not lost.
+# Makes the static library anholon_<name> from src/<name>/**/*.cpp; INTERFACE if there are only headers. Files are
+# compiled in batches (ANHOLON_UNITY), except the files of ALONE, whose local names occur in other files as well. A
+# layer without files makes no target; a layer that depends on it links the layers below instead.
 function(anholon_layer name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "PRECOMPILED" "DEPENDS;LINKS;PRIVATE_LINKS;SOURCES;EXCLUDE;ALONE")
   set(folder "${PROJECT_SOURCE_DIR}/src/${name}")
-  # Globbed although the folder may be missing: its first file then triggers a new configure.
+  # The folder is globbed even if it is missing: its first file then triggers a new configure.
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${folder}/*.cpp")
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS "${folder}/*.h" "${folder}/*.def")
   list(LENGTH sources found_sources)
@@ -45,7 +44,7 @@ function(anholon_layer name)
     anholon_use_precompiled(anholon_${name} ${arg_PRECOMPILED})
     anholon_in_batches(anholon_${name})
     list(TRANSFORM arg_ALONE PREPEND "${folder}/")
-    # A generated file is alone, too: a test may put another one in its place.
+    # A generated file is compiled alone as well, since a test may replace it.
     set_source_files_properties(${arg_ALONE} ${arg_SOURCES} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   else()
     add_library(anholon_${name} INTERFACE)
@@ -83,25 +82,26 @@ function(anholon_use_precompiled target name)
   target_compile_options(${target} PRIVATE ${options})
   if(ANHOLON_PCH)
     target_precompile_headers(${target} REUSE_FROM anholon_precompiled_${name})
-    # ccache needs it.
+    # ccache needs this option.
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
   endif()
 endfunction()
 
-# Compiles the files of a target some at a time, which takes half of the time. Without ANHOLON_UNITY every file is
-# compiled by itself: better for work on one file.
+# Compiles the files of a target in batches, which takes half of the time. Without ANHOLON_UNITY every file is compiled
+# by itself, which is better for work on one file.
 function(anholon_in_batches target)
   if(ANHOLON_UNITY)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   endif()
 endfunction()
 
-# One file per instruction set; the program chooses at run time. Optimized in every build, as nothing else is there to be looked at.
+# There is one file per instruction set, among which the program chooses at run time. They are optimized in every
+# build, as they are not meant for a debugger.
 function(anholon_kernel_tiers)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     set(folder "${PROJECT_SOURCE_DIR}/src/kernel/tiers")
     set_source_files_properties("${folder}/tier_plain.cpp" PROPERTIES COMPILE_OPTIONS "-O2")
-    # Other flags than those of the precompiled header
+    # The flags differ from those of the precompiled header.
     set_source_files_properties("${folder}/tier_plain.cpp" "${folder}/tier_avx2.cpp" "${folder}/tier_avx512.cpp" PROPERTIES
       SKIP_PRECOMPILE_HEADERS ON)
     set_source_files_properties("${folder}/tier_avx2.cpp" PROPERTIES COMPILE_OPTIONS "-O2;-mavx2;-mfma")
@@ -109,10 +109,11 @@ function(anholon_kernel_tiers)
   endif()
 endfunction()
 
-# src/jit: a module of its own, loaded by the program when it wants machine code, so that LLVM costs nothing before that. It sees headers of
-# the kernel only. Left out where LLVM is not installed; everything works without it.
+# src/jit: a module of its own, which the program loads when it needs machine code, so that LLVM costs nothing before.
+# It includes headers of the kernel only. It is left out if LLVM is not installed; everything works without it.
 function(anholon_compiler_module)
-  # Program and module share these types. A hash of the headers tells the program that the module beside it is of another build.
+  # Program and module share the types of these headers. A hash of the headers shows the program whether the module
+  # beside it belongs to another build.
   set(layout "")
   foreach(header kernel/arithmetic kernel/code kernel/plan/plan program/sparse_lu)
     set(file "${PROJECT_SOURCE_DIR}/src/${header}.h")
@@ -143,17 +144,17 @@ function(anholon_compiler_module)
   target_compile_definitions(anholon_jit PRIVATE "${layout}")
   target_include_directories(anholon_jit PRIVATE "${PROJECT_SOURCE_DIR}/src")
   target_include_directories(anholon_jit SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
-  # From archives, and of them what is used: the shared library of all of LLVM takes several times longer to load, and
-  # would meet others of its kind in processes that load this one.
+  # The needed parts of LLVM are linked from archives: the shared library of all of LLVM takes several times longer to
+  # load, and would meet other copies in processes that load this module.
   llvm_map_components_to_libnames(llvm orcjit scalaropts x86codegen x86desc x86info)
   target_link_libraries(anholon_jit PRIVATE ${llvm} anholon_options anholon_warnings)
-  # By ld itself, which packs the relocations of LLVM's tables: they are a twentieth of the file.
+  # The linker is ld itself, which packs the relocations of LLVM's tables: they are a twentieth of the file.
   target_link_options(anholon_jit PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-sections
     -Wl,-z,pack-relative-relocs -Wl,-z,defs)
-  target_link_libraries(anholon_jit PRIVATE -fuse-ld=bfd)  # after the other one's name
+  target_link_libraries(anholon_jit PRIVATE -fuse-ld=bfd)  # follows the name of the other linker
   anholon_use_precompiled(anholon_jit compiler)
   anholon_in_batches(anholon_jit)
-  # The name of the build is part of the key of what is kept on disk.
+  # The id of the build is part of the key of code that is kept on disk.
   target_link_options(anholon_jit PRIVATE -Wl,--build-id=sha1)
   install(TARGETS anholon_jit LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/anholon" COMPONENT program)
 endfunction()
@@ -183,7 +184,8 @@ function(anholon_public_library)
   install(FILES "${CMAKE_BINARY_DIR}/anholonConfigVersion.cmake" DESTINATION "${place}")
 endfunction()
 
-# Installs our licence, and those of the libraries that are linked in where the build takes them from tools/static_libraries.py.
+# Installs the licence of Anholon, and those of the linked libraries if the build takes them from
+# tools/static_libraries.py.
 function(anholon_install_licences place component)
   install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${place}" COMPONENT "${component}" RENAME anholon.txt)
   install(FILES "${PROJECT_SOURCE_DIR}/viewer/dist/licences.txt" DESTINATION "${place}" COMPONENT "${component}" RENAME viewer.txt OPTIONAL)
@@ -196,16 +198,16 @@ function(anholon_install_licences place component)
   endforeach()
 endfunction()
 
-# The source folder is baked in here and in modelfile/text/shipped.cpp alone, so that ccache can serve the rest to a second
-# checkout.
+# Only this function and modelfile/text/shipped.cpp define the source folder, so that ccache can serve the other files
+# to a second checkout.
 function(anholon_cli_definitions target)
-  # The types of the public headers stay in their namespace, as the layers have types of these names.
+  # The types of the public headers stay in their namespace, as types of the layers have the same names.
   target_compile_definitions(${target} PRIVATE ANHOLON_LIBRARY
     ANHOLON_PAPERS_DIR="${PROJECT_SOURCE_DIR}/papers"
     ANHOLON_VERSION="${PROJECT_VERSION}")
 endfunction()
 
-# Links every layer below cli that exists.
+# Links every existing layer below cli.
 function(anholon_link_layers target)
   get_property(layers GLOBAL PROPERTY ANHOLON_LAYERS)
   list(REMOVE_ITEM layers cli)
@@ -213,10 +215,10 @@ function(anholon_link_layers target)
   target_link_libraries(${target} PRIVATE anholon_options ${layers})
 endfunction()
 
-# A formulation is found by its file name: src/formulation/forms/<unknowns>/<name>.cpp defines
-# `extern const Formulation <name>;` in namespace anholon::forms. Linking by name (and not by
-# self-registration) keeps the linker from dropping one silently.
-# EXTRA: further files, and the registry gets a name of its own: a test that adds a form.
+# A formulation is found by its file name: src/formulation/forms/<unknowns>/<name>.cpp defines `extern const
+# Formulation <name>;` in namespace anholon::forms. Linking by name (and not by self-registration) keeps the linker
+# from dropping one silently. With EXTRA, further files, the registry needs a NAME of its own: a test adds a form in
+# this way.
 function(anholon_formulation_registry result)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "NAME" "EXTRA")
   set(${result} "" PARENT_SCOPE)
@@ -259,10 +261,10 @@ const std::vector<const Formulation*>& formulations() {
   set(${result} "${output}" PARENT_SCOPE)
 endfunction()
 
-# Debian ships these without CMake packages: external::<name> from one header and its libraries.
+# Debian has no CMake packages of these libraries: makes external::<name> from one header and its libraries.
 function(anholon_find_library name header)
   find_path(ANHOLON_${name}_INCLUDE ${header})
-  # The folder counts before the name: CMAKE_PREFIX_PATH comes first, whatever the library is called there.
+  # A folder counts before a name: CMAKE_PREFIX_PATH comes first, whatever name the library has there.
   find_library(ANHOLON_${name}_LIBRARY NAMES ${ARGN} NAMES_PER_DIR)
   mark_as_advanced(ANHOLON_${name}_INCLUDE ANHOLON_${name}_LIBRARY)
   if(NOT ANHOLON_${name}_INCLUDE OR NOT ANHOLON_${name}_LIBRARY)
@@ -283,8 +285,8 @@ function(anholon_find_header name header)
   target_include_directories(external::${name} INTERFACE "${ANHOLON_${name}_INCLUDE}")
 endfunction()
 
-# A library we can do without: ANHOLON_FOUND_<name> is external::<name>, with the definition ANHOLON_<NAME> that says so, or empty
-# where `option` is off or none of the pkg-config modules is there.
+# An optional library: ANHOLON_FOUND_<name> is external::<name>, which defines ANHOLON_<NAME>. It is empty if `option`
+# is off or none of the pkg-config modules is found.
 function(anholon_find_optional name option)
   set(ANHOLON_FOUND_${name} "" PARENT_SCOPE)
   if(NOT ${option})
@@ -307,7 +309,7 @@ function(anholon_find_optional name option)
   message(STATUS "${name} was not found: the build does without it")
 endfunction()
 
-# A library that was found is not linked but loaded when it is needed, by its name in ANHOLON_<NAME>_FILE.
+# A library that is found is not linked, but loaded when it is needed, by its name in ANHOLON_<NAME>_FILE.
 function(anholon_load_at_run_time name)
   if(NOT ANHOLON_FOUND_${name})
     return()
@@ -338,7 +340,8 @@ function(anholon_pick_linker target)
   endif()
 endfunction()
 
-# src/report: the style of pages, the literature, and the viewer where npm has made it (viewer/dist), put into the program as they are.
+# src/report: the style of pages, the literature, and the viewer if npm has built it (viewer/dist) are put into the
+# program unchanged.
 function(anholon_page_assets result)
   set(folder "${PROJECT_SOURCE_DIR}")
   set(nothing "${CMAKE_BINARY_DIR}/generated/nothing")

@@ -25,14 +25,15 @@ function(anholon_python_module)
   set(place "${CMAKE_BINARY_DIR}/python/anholon")
   set_target_properties(anholon_python PROPERTIES OUTPUT_NAME "_core" LIBRARY_OUTPUT_DIRECTORY "${place}")
   target_include_directories(anholon_python PRIVATE "${PROJECT_SOURCE_DIR}/include")
-  # The layers themselves, of which nothing is seen from outside: other modules in the process may have the same libraries.
+  # The layers themselves are linked and none of their names is exported, since other modules in the process may
+  # contain the same libraries.
   target_link_libraries(anholon_python PRIVATE anholon_api anholon_options)
   target_link_options(anholon_python PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-sections)
   nanobind_add_stub(anholon_python_stub MODULE anholon._core OUTPUT "${place}/_core.pyi"
     PYTHON_PATH "${CMAKE_BINARY_DIR}/python" DEPENDS anholon_python)
   install(TARGETS anholon_python LIBRARY DESTINATION anholon COMPONENT python)
   install(FILES "${place}/_core.pyi" DESTINATION anholon COMPONENT python)
-  # The module of the widget, where npm has built the viewer.
+  # The module of the widget, if npm has built the viewer.
   install(FILES "${PROJECT_SOURCE_DIR}/viewer/dist/widget.js" DESTINATION anholon COMPONENT python OPTIONAL)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/models/" DESTINATION anholon/share/anholon/models COMPONENT python)
   anholon_install_licences(anholon/licences python)
@@ -43,7 +44,7 @@ function(anholon_python_module)
     add_custom_command(TARGET anholon_python POST_BUILD
       COMMAND "${CMAKE_COMMAND}" -E create_symlink "$<TARGET_FILE:anholon_jit>" "${place}/anholon-compiler.so")
   endif()
-  # What is written in Python is used where it lies.
+  # Python files are linked to their place in the source tree.
   file(MAKE_DIRECTORY "${place}")
   file(CREATE_LINK "${PROJECT_SOURCE_DIR}/viewer/dist/widget.js" "${place}/widget.js" SYMBOLIC)
   foreach(module IN LISTS modules)

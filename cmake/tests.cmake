@@ -1,26 +1,26 @@
-# Every test ctest knows. Names: unit.<layer>.<Suite.Test>, <set>.<shard>, golden.<kind>.<case>, script.<name>.
+# All tests of ctest. Names: unit.<layer>.<Suite.Test>, <set>.<shard>, golden.<kind>.<case>, script.<name>.
 
 find_package(GTest REQUIRED)
 find_package(nlohmann_json REQUIRED)
 include(GoogleTest)
 
-# No test keeps compiled code in the user's home.
+# No test keeps compiled code in the home folder of the user.
 set(no_cache "ANHOLON_CACHE=")
 
-# The system's python first: a version manager's shim costs ten times its start-up.
+# The system's python is preferred: the shim of a version manager takes ten times as long to start.
 find_program(ANHOLON_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(ANHOLON_PYTHON python3 REQUIRED)
 
 set(test_optimization $<$<CONFIG:Release>:-Og;-g0>)
 anholon_precompiled(tests OPTIONS ${test_optimization} LINKS anholon_setup GTest::gtest)
 
-# The files of a layer or a set are compiled in batches (ANHOLON_UNITY). Each has a namespace named after it, so local
-# names of two files do not clash.
+# The files of a layer or a set are compiled in batches (ANHOLON_UNITY). Each has a namespace that is named after it,
+# so local names of two files do not clash.
 function(anholon_test_executable target)
   add_executable(${target} ${ARGN})
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/test")
   target_compile_definitions(${target} PRIVATE ANHOLON_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  # The work is done in the layers; a test itself need not be fast, but its compilation.
+  # The layers do the work, so the code of a test need not be fast, but must compile fast.
   anholon_use_precompiled(${target} tests)
   target_link_libraries(${target} PRIVATE anholon_options anholon_warnings
     nlohmann_json::nlohmann_json GTest::gtest GTest::gtest_main)
@@ -57,7 +57,8 @@ if(ANHOLON_FOUND_hdf5)
   target_compile_definitions(test_result PRIVATE ANHOLON_HDF5)
 endif()
 
-# A form added as one file: the registry of the build with that file, everything else as it is.
+# A form is added as one file: this program has the registry of the build with that file, and all other files of the
+# build.
 
 file(GLOB new_form "${PROJECT_SOURCE_DIR}/test/house/forms/*.cpp")
 anholon_formulation_registry(registry_with_new_form NAME new_ EXTRA ${new_form})
@@ -65,7 +66,8 @@ anholon_test_executable(test_new_form test/house/new_form_test.cpp ${new_form} $
 anholon_link_layers(test_new_form)
 gtest_discover_tests(test_new_form TEST_PREFIX "house." PROPERTIES LABELS unit ENVIRONMENT "${no_cache}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
 
-# A format of results added as one file and a name in the table: the commands of the build with that table in its place.
+# A format of results is added as one file and a name in the table: this program has the commands of the build with
+# that table in its place.
 
 if(TARGET anholon_cli)
   file(GLOB new_format "${PROJECT_SOURCE_DIR}/test/house/formats/*.cpp")
@@ -76,7 +78,7 @@ if(TARGET anholon_cli)
 endif()
 
 # test/<set>/*_test.cpp: one executable over all layers, run in shards
-# Their tests share costly derivations within a process; shards keep that and fill the cores.
+# Tests of a set share costly derivations within a process; shards keep that and use all cores.
 
 file(GLOB support_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/test/support/*.cpp")
 if(support_sources)
@@ -109,14 +111,14 @@ function(anholon_test_set set)
   endforeach()
 endfunction()
 
-# Label `long`: does more under ANHOLON_LONG=1, and is what ./dev long runs.
+# Label `long`: the test does more under ANHOLON_LONG=1; ./dev long runs it.
 # Label `long-only`: left out of ./dev test.
 anholon_test_set(oracle      SHARDS 4 LABELS oracle long)
 anholon_test_set(laws        SHARDS 4 LABELS laws long)
 anholon_test_set(backends    SHARDS 2 LABELS backends long)
-target_sources(test_backends PRIVATE src/jit/packs.cpp src/jit/packed_memory.cpp)  # what of the module is not LLVM's
+target_sources(test_backends PRIVATE src/jit/packs.cpp src/jit/packed_memory.cpp)  # module parts without LLVM
 
-# The translator of machine code alone: the program does not link it, as it is part of a module.
+# The translator of machine code is linked here by itself, as it is part of a module and not of the program.
 if(TARGET anholon_jit)
   find_package(LLVM 19.1 REQUIRED CONFIG)
   file(GLOB translator CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/jit/x86/*.cpp")
@@ -184,10 +186,10 @@ if(TARGET anholon_python AND TARGET anholon)
   foreach(file IN LISTS files)
     string(REGEX REPLACE ".*/test_(.*)\\.py" "\\1" name "${file}")
     anholon_python_test(${name} -m pytest -q -rs -c "${settings}" -p no:cacheprovider "${file}")
-    # pytest returns 5 if a package that the whole file needs is not there.
+    # pytest returns 5 if a package that the whole file needs is missing.
     set_tests_properties("python.${name}" PROPERTIES SKIP_RETURN_CODE 5)
   endforeach()
-  # What takes minutes: memory of long runs, the compilers of other packages in the same process.
+  # These tests take minutes: memory of long runs, the compilers of other packages in the same process.
   set_tests_properties(python.long PROPERTIES LABELS "python;long-only")
   anholon_python_test(examples -m pytest -q -c "${settings}" -p no:cacheprovider --doctest-modules "${python_module}/anholon")
   set(workers "${PROJECT_SOURCE_DIR}/test/sweeps/workers.py" --program $<TARGET_FILE:anholon>)
@@ -199,7 +201,7 @@ if(TARGET anholon_python AND TARGET anholon)
 endif()
 
 if(TARGET anholon)
-  # The installed library, used by a project of its own
+  # A separate project uses the installed library.
   anholon_script_test(outside tools/check_outside.py ${CMAKE_BINARY_DIR} --compiler ${CMAKE_CXX_COMPILER})
   anholon_script_test(readme tools/readme.py --program $<TARGET_FILE:anholon>)
   anholon_script_test(commands tools/commands.py --program $<TARGET_FILE:anholon>)
@@ -208,7 +210,7 @@ if(TARGET anholon)
   anholon_script_test(reference_selftest tools/reference.py --program $<TARGET_FILE:anholon> --self-test)
   anholon_script_test(papers_tables tools/papers.py --program $<TARGET_FILE:anholon>)
   anholon_script_test(papers_selftest tools/papers.py --program $<TARGET_FILE:anholon> --self-test)
-  # Every claim of the papers, decided.
+  # Decides every claim of the papers.
   add_test(NAME papers.check COMMAND anholon papers --check --quiet)
   set_tests_properties(papers.check PROPERTIES LABELS laws)
   anholon_script_test(h5py test/house/read_with_h5py.py $<TARGET_FILE:anholon>)
@@ -218,11 +220,11 @@ if(TARGET anholon)
   anholon_script_test(gallery_selftest tools/gallery.py --program $<TARGET_FILE:anholon> --self-test)
   anholon_script_test(generated test/backends/check_generated.py $<TARGET_FILE:anholon>)
   set_tests_properties(script.generated PROPERTIES LABELS "script;long")
-  # Evaluation and motion of every reference system by a form without multipliers; by every form: ./dev long.
+  # Evaluation and motion of every reference system by a form without multipliers; ./dev long runs them by every form.
   anholon_script_test(oracle_chaplygin test/oracle/check_models.py $<TARGET_FILE:anholon> --form chaplygin --jobs 1)
   anholon_script_test(oracle_all_forms test/oracle/check_models.py $<TARGET_FILE:anholon> --form all)
   set_tests_properties(script.oracle_all_forms PROPERTIES LABELS long-only)
-  # The digits to trust against 30 digits: some runs; all 650 of them, and 60 sweeps, with ./dev long.
+  # The digits to trust, compared with 30 digits: some runs here; ./dev long compares all 650 runs and 60 sweeps.
   anholon_script_test(estimate_selftest test/estimate/run.py $<TARGET_FILE:anholon> --jobs 1 --self-test)
   anholon_script_test(estimate test/estimate/run.py $<TARGET_FILE:anholon> --jobs 2)
   set_tests_properties(script.estimate PROPERTIES LABELS "script;long" PROCESSORS 2)
@@ -233,7 +235,7 @@ if(TARGET anholon)
   endif()
   anholon_script_test(hostile test/hostile/run.py --program $<TARGET_FILE:anholon> ${no_limits})
   set_tests_properties(script.hostile PROPERTIES PROCESSORS 2)
-  # What attacks and faults leave behind: few of them here, all with ANHOLON_LONG.
+  # The traces of attacks and faults: few of them here, all with ANHOLON_LONG.
   foreach(attack fields mutants certificates)
     set(limits "")
     if(attack STREQUAL "mutants")
@@ -254,7 +256,7 @@ if(TARGET anholon)
   anholon_script_test(studio_sweeps test/studio/sweeps.py --program $<TARGET_FILE:anholon>)
   set_tests_properties(script.studio_sweeps PROPERTIES SKIP_RETURN_CODE 77)
   anholon_script_test(studio_sweeps_selftest test/studio/sweeps.py --self-test)
-  # Pages of real models in a browser; left out where there is none, or no viewer.
+  # Pages of real models in a browser; left out if there is no browser or no viewer.
   find_program(ANHOLON_NODE node)
   if(ANHOLON_NODE)
     add_test(NAME script.pages COMMAND "${ANHOLON_NODE}" test/report/pages.mjs $<TARGET_FILE:anholon> WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
@@ -283,7 +285,7 @@ if(TARGET anholon)
     set_tests_properties("golden.${name}" PROPERTIES LABELS golden ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1;${no_cache}")
   endforeach()
 
-  # Pages of doc/ whose commands are run likewise: doc.<part>.<page>, or doc.<page>
+  # Pages of doc/ whose commands are run in the same way: doc.<part>.<page>, or doc.<page>
   set(doc_folder "${PROJECT_SOURCE_DIR}/doc")
   file(GLOB pages CONFIGURE_DEPENDS RELATIVE "${doc_folder}"
     "${doc_folder}/book/*.md" "${doc_folder}/recipes/*.md" "${doc_folder}/asked/*.md" "${doc_folder}/from/*.md" "${doc_folder}/sweeps.md")

@@ -2,11 +2,11 @@
 """Forged and flipped certificates: `anholon verify` confirms none that says something false.
 
     certificates.py --program PROGRAM [--count 1000]
-    certificates.py --self-test                         a verifier that believes everything is found out
+    certificates.py --self-test                         a verifier that confirms everything is noticed
 
-Certificates of `anholon prove` get other numbers, nodes, functions, claims, witnesses, or other bytes. Where all claims of one are confirmed
-nevertheless, they are computed here, in doubles with a bound of their error: a claim of zero must not be clearly different from zero at any of
-some random points, a claim of a difference must not be zero at its witness.
+Certificates of `anholon prove` get other numbers, nodes, functions, claims, witnesses, or other bytes. If all claims of a certificate are confirmed
+nevertheless, this test computes them in doubles with a bound of their error: a claim of zero must not differ clearly from zero at any of some
+random points, and a claim of a difference must not be zero at its witness.
 """
 
 import argparse
@@ -31,7 +31,7 @@ CLEARLY = 1000  # times the bound of the error
 
 
 class NoValue(Exception):
-    """Nothing is defined there."""
+    """An expression has no value at the point."""
 
 
 def slope(name, x, y):
@@ -64,7 +64,7 @@ def function(name, x):
 
 
 def evaluate(nodes, point):
-    """(value, bound of its error) of every node, None where it has none; point: those of the symbols."""
+    """Pairs (value, bound of its error) of all nodes, None for a node without a value; `point` holds those of the symbols."""
     values = []
     for node in nodes:
         kind, rest = node[1], node[2:]
@@ -126,7 +126,7 @@ def difference(claim, values):
 
 
 def lies(certificate):
-    """What one of its claims says and is false."""
+    """A false statement of one of the claims, or None."""
     r = random.Random(1)
     nodes, symbols = certificate["nodes"], certificate["symbols"]
     for _ in range(POINTS):
@@ -238,7 +238,7 @@ def verify(program, data, folder):
 
 
 def judge(code, said, data):
-    """What is wrong with this answer."""
+    """The fault of this answer, or None."""
     if code not in (0, 1, 2):
         return f"exit status {code}: {said[:200]}"
     if code == 2 and not said.strip():

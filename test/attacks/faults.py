@@ -2,11 +2,11 @@
 """Signals at random moments, full disks, limits, missing folders, readers that leave, two processes on one file: what is written is whole, or not there.
 
     faults.py --program PROGRAM [--moments 60] [PART...]     parts: signals continue disk places pipes pairs cache
-    faults.py --self-test                                    a file that is cut is found
+    faults.py --self-test                                    a file that is cut is noticed
 
-After each fault a file under its name is the old one, or the whole new one; what is not finished is called NAME.part; nothing else lies beside it. Rows
-in NAME.part are the first ones of an undisturbed run, and after a signal that is caught (Ctrl-C, TERM, HUP) so are the rows under the name. The next
-run writes the file as if nothing had happened; a saved run goes on with the same bits. Nothing waits for ever, and every error has a word.
+After each fault a file under its name is the old one, or the whole new one. An unfinished file is called NAME.part; no other file lies beside it. Rows
+in NAME.part are the first ones of an undisturbed run, and so are the rows under the name after a caught signal (Ctrl-C, TERM, HUP). The next run
+writes the file as if nothing had happened; a saved run continues with the same bits. No process waits for ever, and every error has a message.
 """
 
 import argparse
@@ -27,7 +27,7 @@ PATIENCE = 120  # seconds
 OLD = b"an old file\n"
 NOBODY = 65534
 
-# Commands that write: name of the output, words. RUN stands for a run that is there, MODEL for a model file.
+# Commands that write: name of the output, words. RUN stands for an existing run, MODEL for a model file.
 WRITERS = {
     "simulate-csv": ("rows.csv", "simulate disc --to 400 --every 0.05 --error-estimate never -o OUT"),
     "simulate-h5": ("rows.h5", "simulate disc --to 400 --every 0.05 --error-estimate never -o OUT"),
@@ -48,7 +48,7 @@ WRITERS = {
     "new": ("mine.toml", "new pendulum -o OUT"),
     "fmt": ("disc.toml", "fmt OUT"),
 }
-NEW_ONLY = {"new"}  # what is there is refused
+NEW_ONLY = {"new"}  # refuses an existing file
 IN_PLACE = {"fmt"}
 
 
@@ -62,7 +62,7 @@ def must(truth, what):
 
 
 class Bench:
-    """A folder for one case, the program, and what undisturbed runs wrote."""
+    """A folder for one case, the program, and the files of undisturbed runs."""
 
     def __init__(self, program, folder):
         self.program, self.folder = program, pathlib.Path(folder)
@@ -81,7 +81,7 @@ class Bench:
         return subprocess.Popen(words, stdin=subprocess.DEVNULL, **more)
 
     def end(self, process):
-        """Exit code, what was said."""
+        """Exit status and messages of a process."""
         try:
             said = process.communicate(timeout=PATIENCE)[1] or b""
         except subprocess.TimeoutExpired as e:
@@ -114,7 +114,7 @@ class Bench:
         elif old and name not in NEW_ONLY:
             target.write_bytes(OLD)
 
-    # What a file may hold.
+    # The contents that a file may have.
 
     def before(self, name):
         return self.unformatted if name in IN_PLACE else OLD
@@ -133,7 +133,7 @@ class Bench:
         return text
 
     def same(self, name, path):
-        """Whether the file is that of an undisturbed run; times and places may differ."""
+        """True if the file is that of an undisturbed run; times and places may differ."""
         data, known = path.read_bytes(), self.reference(name)
         if data == known:
             return True
@@ -151,7 +151,7 @@ class Bench:
         return text.split(b"\n")[:-1]
 
     def begins(self, name, path, code, cut_allowed):
-        """The rows of the file are the first ones of an undisturbed run."""
+        """Checks that the rows of the file are the first ones of an undisturbed run."""
         text = self.rows(path)
         place = self.folder / ("known" + path.suffixes[0])
         place.write_bytes(self.reference(name))
@@ -159,7 +159,7 @@ class Bench:
         if cut_allowed:
             text = text[: text.rfind(b"\n") + 1]
         self.whole_lines(text)
-        # A run that was asked to end says in its last row how far it came.
+        # The last row of a run that was asked to end shows the time that it reached.
         early = text[: text[:-1].rfind(b"\n") + 1]
         if not known.startswith(text) and not (code == 1 and known.startswith(early)):
             lines, all_lines = text.split(b"\n"), known.split(b"\n")
@@ -167,7 +167,7 @@ class Bench:
             raise Wrong(f"row {at} of {len(lines)} is not that of an undisturbed run: {lines[at][:60]!r}")
 
     def judge(self, name, target, code, had_old):
-        """The folder after a fault."""
+        """Checks the folder after a fault."""
         allowed = {target.name, target.name + ".part"}
         others = {f.name for f in target.parent.iterdir()} - allowed
         must(not others, f"left beside it: {sorted(others)}")
@@ -197,7 +197,7 @@ class Bench:
             return False
 
     def again(self, name, target):
-        """The next run is as if nothing had happened."""
+        """Checks that the next run is as if nothing had happened."""
         if name in NEW_ONLY:
             target.unlink(missing_ok=True)
         if name in IN_PLACE:
@@ -240,7 +240,7 @@ def signals(bench, moments, r):
 
 
 def carry_on(bench, moments, r):
-    """A saved run goes on with the same bits, whatever ended it."""
+    """A saved run is continued with the same bits, however it ended."""
     for numbers in ("", " --numbers long-double"):
         line = f"simulate rolling-coin --to 3000 --every 1 --error-estimate never --tolerance 1e-15{numbers} -o OUT"
         state = {}
@@ -274,7 +274,7 @@ def carry_on(bench, moments, r):
                 line_on = line.split(" --to")[0].split(" --tolerance")[0] + f" --to 3000 --every 1 --error-estimate never --continue {saved} -o OUT"
                 code, said = bench.call(line_on, rest)
                 if code == 2 and "has come to" in said:
-                    return  # it had come to its end
+                    return  # the run was complete
                 must(code == 0, f"--continue: exit status {code}: {said[-300:]}")
                 later = rest.read_bytes().split(b"\n")[1:-1]
                 first = rows if rows.exists() else place / (rows.name + ".part")
@@ -284,7 +284,7 @@ def carry_on(bench, moments, r):
                 need = len(state["rows"]) - len(later)
                 must(later == state["rows"][need:], "rows after the saved run have other bits")
                 must(before[:need] == state["rows"][:need], f"rows before the saved run: {len(before)} of {need}, or other bits")
-                if form == "h5":  # and into the same file
+                if form == "h5":  # and it is continued in the same file
                     code, said = bench.call(line_on, rows)
                     must(code == 0, f"--continue into the same file: exit status {code}: {said[-300:]}")
                     must(bench.rows(rows).split(b"\n")[1:-1] == state["rows"], "the file that went on is not that of an undisturbed run")
@@ -301,7 +301,7 @@ def limited(size):
 
 
 def tiny_disk(bench, size):
-    """A file system of this size; None where it cannot be made."""
+    """A file system of this size, or None if it cannot be made."""
     place = bench.folder / "disk"
     place.mkdir(exist_ok=True)
     done = os.geteuid() == 0 and subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(place)], stderr=subprocess.DEVNULL, check=False).returncode == 0
@@ -360,7 +360,7 @@ def places(bench, moments, r):
                     target.mkdir()
                 elif what == "/dev/full":
                     if target.suffix not in (".csv", ".json", ".html", ".toml") or name in ("plot-tex", "convert-json", "convert-csv", "simulate-json", "sweep-json", "new"):
-                        return  # the end of the name says the format
+                        return  # the end of the name gives the format
                     target = pathlib.Path("/dev/full")
                 elif what == "a link":
                     if name in NEW_ONLY:
@@ -487,7 +487,7 @@ def pairs(bench, moments, r):
 
 
 def cache(bench, moments, r):
-    """What lies in the folder of compiled code is made anew or is what it was; rows have the same bytes."""
+    """Compiled code in the folder is made anew or is unchanged; rows have the same bytes."""
     line = "sweep disc --vary phi'=5:7:2000 --to 20 -o OUT"
     folder = bench.folder / "code"
     env = dict(os.environ, ANHOLON_CACHE=str(folder))
@@ -566,7 +566,7 @@ PARTS = {"signals": signals, "continue": carry_on, "disk": disk, "places": place
 
 
 def self_test():
-    """Programs that do it wrong: a file written in place and cut, rows left out, a part beside it."""
+    """Faulty programs: one writes a file in place and cuts it, one leaves out rows, one leaves a part beside the file."""
     mistakes = 0
     with tempfile.TemporaryDirectory() as scratch:
         bench = Bench.__new__(Bench)

@@ -2,11 +2,11 @@
 """Text that attacks, in every field of the language: no output takes it for anything but text.
 
     fields.py --program PROGRAM [--field NAME] [--long]
-    fields.py --self-test                         outputs that let it through are found
+    fields.py --self-test                         outputs with such text are noticed
 
-The fields are those of `anholon reference --schema`, which is made from the table of the language. Each gets, as its value and as a name where names are
-the author's, sequences of the terminal, ends of comments, strings, elements and formulas of each format that is written, marks of direction and
-line breaks. What is accepted goes through all commands; outputs are read by a parser of their format, or looked through for what must not be there.
+The fields are those of `anholon reference --schema`, which is made from the table of the language. Each gets, as its value and as a name if the
+author chooses the name, sequences of the terminal, ends of comments, strings, elements and formulas of each format that is written, marks of
+direction and line breaks. Accepted models go through all commands; outputs are read by a parser of their format, or searched for forbidden text.
 """
 
 import argparse
@@ -100,7 +100,7 @@ EXAMPLES = {"name": "n1", "mass": 1, "center": "x*ex", "position": "x*ex", "on":
 
 
 def with_attack(path, attack):
-    """The base with the attack at this place; what stands beside it is what such an element needs."""
+    """The base with the attack at this place; the keys beside it are those that such an element needs."""
     model = json.loads(json.dumps(BASE))
     place, last = model, None
     for k, step in enumerate(path[:-1]):
@@ -137,7 +137,7 @@ def with_attack(path, attack):
 
 
 def steers(text, but=""):
-    """A character that steers a terminal or the direction of writing."""
+    """A character that steers a terminal or the direction of writing, or None."""
     for c in text:
         if c not in "\n" + but and (unicodedata.category(c) in ("Cc", "Zl", "Zp") or (unicodedata.category(c) == "Cf" and c not in "\u200c\u200d\u2061\u2062\u2063\u2064")):
             return f"U+{ord(c):04X}"
@@ -149,7 +149,7 @@ def in_text(data):
 
 
 def in_said(data):
-    """Messages: no line of its own."""
+    """Messages: the attack begins no line of its own."""
     text = data.decode("utf-8")
     return steers(text) or ("a line of its own" if re.search(r"^(error: TACK|hint: x$|3$)", text, re.M) else None)
 
@@ -232,7 +232,7 @@ def nothing(data):
     return None
 
 
-# command, what its standard output (and a file OUT) is
+# command, the reader of its standard output, the reader of a file OUT
 COMMANDS = (
     ("check MODEL", in_said, None),
     ("check MODEL --json", in_json, None),
@@ -272,7 +272,7 @@ def run(program, line, model, out, folder):
 
 
 def faults(program, model, folder):
-    """What this model brings out."""
+    """The faults of all commands on this model."""
     path, out = folder / "model.toml", folder / "out"
     path.write_text(model_text(model), encoding="utf-8")
     accepted = False
@@ -346,7 +346,7 @@ def main():
             finally:
                 shutil.rmtree(folder)
 
-        # All at once, and where there is time each alone.
+        # All attacks at once and, with --long, each alone.
         attacks = {"all": "".join(ATTACKS.values())} | (ATTACKS if options.long else {})
         jobs = list(enumerate((p, a) for p in paths for a in attacks.items()))
         with concurrent.futures.ThreadPoolExecutor(2) as pool:

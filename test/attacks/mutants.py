@@ -2,14 +2,14 @@
 """Mutated models and command lines over all commands: none crashes, hangs, fills memory, reports a fault of its own or gives rows without numbers.
 
     mutants.py --program PROGRAM [--count 10000] [--first 0] [--jobs 2] [--keep FOLDER]
-    mutants.py --self-test                              each fault is found in a program that has it
+    mutants.py --self-test                              each fault is noticed in a program that has it
 
-Mutant number k is the same on every machine: a shipped model (or one of test/hostile) in which lines, words, numbers, signs or bytes were
-changed, exchanged, doubled or taken away, and a command line made in the same way. Each has 5 seconds of processor time (proofs more) and 1 GiB. It fails if
+Mutant number k is the same on every machine: a shipped model (or one of test/hostile) in which lines, words, numbers, signs or bytes are
+changed, exchanged, doubled or removed, and a command line made in the same way. Each has 5 seconds of processor time (proofs more) and 1 GiB. It fails if
 
     it ends by a signal, or with another exit status than 0, 1, 2
-    it ends with 0 and a row holds something that is no number
-    it ends with 1 or 2 and says nothing
+    it ends with 0 and a row holds a value that is no number
+    it ends with 1 or 2 and without a message
     it sends a control character to the terminal
 """
 
@@ -52,7 +52,7 @@ def number(r):
 
 
 def mutate_text(r, text, others):
-    """One change."""
+    """Makes one change."""
     lines = text.split("\n")
     kind = r.randrange(14)
     at = r.randrange(len(lines))
@@ -73,14 +73,14 @@ def mutate_text(r, text, others):
             mine = r.choice([p[0] for p in places])
             new = number(r) if kind == 4 else mine if r.random() < 0.6 else r.choice(WORDS)
             return text[: m.start()] + new + text[m.end() :]
-    elif kind in (8, 9):  # a sign is put in, or one goes
+    elif kind in (8, 9):  # a sign is inserted, or removed
         i = r.randrange(len(text) + 1)
         return text[:i] + (r.choice(SIGNS) if kind == 8 else "") + text[i + (kind == 9) :]
-    elif kind == 10:  # a part twice, or nested
+    elif kind == 10:  # a part is repeated, or nested
         i = r.randrange(len(text) + 1)
         j = min(len(text), i + r.randrange(1, 200))
         return text[:j] + text[i:j] * r.choice([1, 2, 50]) + text[j:]
-    elif kind == 11:  # cut off
+    elif kind == 11:  # the text is cut off
         return text[: r.randrange(len(text) + 1)]
     elif kind == 12:  # a formula becomes a part of another one
         places = list(re.finditer(r'"([^"\n]+)"', text))
@@ -99,7 +99,7 @@ def names_of(text):
 
 
 def command_line(r, text, model, folder, certificates, runs):
-    """Words after the program; OUT stands for a file that is written."""
+    """Words after the program; OUT stands for a file that the command writes."""
     names = names_of(text) + ["x", "nothing"]
     parameters = re.findall(r"^(\w+)\s*=", text, re.M) + ["m"]
 
@@ -151,7 +151,7 @@ def command_line(r, text, model, folder, certificates, runs):
 
 
 def mutated_file(r, path, folder, name):
-    """Bytes of a file flipped, cut or doubled."""
+    """Bytes of a file, flipped, cut or doubled."""
     data = bytearray(pathlib.Path(path).read_bytes())
     for _ in range(r.choice([0, 1, 1, 2, 10])):
         if not data:
@@ -174,7 +174,7 @@ def mutated_file(r, path, folder, name):
 
 
 def mutant(k, models, folder, certificates, runs):
-    """Number k: the words of its command line, its model written."""
+    """Mutant number k: writes its model and gives the words of its command line."""
     r = random.Random(k)
     texts = [m.read_text(encoding="utf-8", errors="replace") for m in (r.choice(models), r.choice(models))]
     text = texts[0]
@@ -208,7 +208,7 @@ def run(program, words, folder, limits=True):
 
 
 def no_numbers(text):
-    """The first row of CSV that is no row of numbers; words are allowed in the column `outcome`, where they say that the case did not finish."""
+    """The first row of CSV that is no row of numbers, or None; words are allowed in the column `outcome` of a case that did not finish."""
     lines = text.decode("utf-8", "replace").splitlines()
     if not lines:
         return None
@@ -238,7 +238,7 @@ def null_in(rows):
 
 
 def rows_at_fault(words, out, folder):
-    """What is wrong with the rows that a run with exit status 0 gave."""
+    """The fault of the rows of a run with exit status 0, or None."""
     if words[0] not in ("simulate", "sweep"):
         return None
     target = words[words.index("-o") + 1] if "-o" in words[:-1] else ""
@@ -283,7 +283,7 @@ def fault(program, words, folder, limits=True):
 
 
 def prepared(program, folder):
-    """Certificates and runs that mutants begin with."""
+    """Makes the certificates and runs that mutants begin with."""
     made = {"proof1.json": ["prove", "disc"], "proof2.json": ["prove", "luo-zhao-example-2", "--forms", "routh,maggi"]}
     runs = {"run.csv": ["simulate", "disc"], "run.json": ["simulate", "disc"], "run.h5": ["simulate", "disc"]}
     for name, words in made.items():
@@ -317,7 +317,7 @@ def self_test():
                 print(f"not found: {name}: {found}")
                 missed += 1
         models = corpus()
-        for k in range(50):  # the same mutant at each time
+        for k in range(50):  # mutant k is the same each time
             again = []
             for _ in range(2):
                 again.append((mutant(k, models, folder, [models[0]], [models[0]]), (folder / "model.toml").read_bytes()))

@@ -1,4 +1,4 @@
-// Compiled code on disk: whatever happens to the folder, the code is right, and nobody is told of trouble.
+// Compiled code on disk: whatever happens to the folder, the code is right, and no trouble is reported.
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -42,7 +42,8 @@ struct Subject {
     return KernelPlan::make(stepping, stages, parameters, 0, state);
   }
 
-  // Compiled with this folder, the coefficients are those of the tables. Empty, or what is wrong.
+  // Compares the coefficients of code that is compiled with this folder with those of the tables. Returns an empty text
+  // if they agree, else the mistake.
   std::string check(const std::string& cache, int stages = 6) const {
     const auto plain = plan(stages), compiled = plan(stages);
     if (const std::string why = compiled->compile(cache); !why.empty()) return why;
@@ -87,7 +88,7 @@ class Cache : public testing::TestWithParam<int> {
     for (const auto& e : fs::directory_iterator(folder_)) all.push_back(e.path());
     return all;
   }
-  // The one entry, made now.
+  // Compiles into the empty folder and returns the one file there.
   fs::path entry() const {
     EXPECT_EQ(sleigh().check(folder_), "");
     const auto all = files();
@@ -134,7 +135,8 @@ TEST_P(Cache, TakesNoFileThatIsNotWhole) {
   }
 }
 
-// A whole file under another's name: of other stages, as a stale version would be.
+// A whole file lies under the name of another key: the code has another number of stages, as that of a stale version
+// could.
 TEST_P(Cache, TakesNoCodeOfAnotherKey) {
   const fs::path file = entry();
   const std::string good = test::file_text(file);
@@ -152,7 +154,7 @@ TEST_P(Cache, TakesNoCodeThatOthersMayWrite) {
   EXPECT_EQ(fs::status(file).permissions() & fs::perms::others_write, fs::perms::none) << "not made anew";
 }
 
-// A link may lead to what others put there.
+// A link may lead to a file that others wrote.
 TEST_P(Cache, FollowsNoLink) {
   const fs::path file = entry(), elsewhere = folder_ + "/elsewhere";
   fs::rename(file, elsewhere);
@@ -180,7 +182,7 @@ TEST(Trust, IsInFilesOfTheUserAndOfRoot) {
   EXPECT_FALSE(trusted(kOther, S_IFREG | 0600, 0)) << "root runs its own code only";
 }
 
-// Root can give the file away; others cannot, and for them it stays the file that was written.
+// Root can give the file to another owner. Other users cannot; for them it stays the file that was written.
 TEST_P(Cache, TakesNoCodeOfAnotherOwner) {
   const fs::path file = entry();
   const std::string good = test::file_text(file);
@@ -203,7 +205,7 @@ TEST_P(Cache, DoesWithoutAFolder) {
   fs::create_directory(folder_ + "/locked");
   fs::permissions(folder_ + "/locked", fs::perms::owner_read | fs::perms::owner_exec);
   EXPECT_EQ(sleigh().check(folder_ + "/locked"), "");
-  // Things that are no files, under the name of the entry.
+  // A pipe and a folder take the name of the entry.
   const fs::path file = files().empty() ? fs::path() : *fs::directory_iterator(folder_ + "/made/when/needed");
   fs::remove(file);
   ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
@@ -228,8 +230,7 @@ TEST_P(Cache, LeavesNothingOnAFullDisk) {
   EXPECT_TRUE(files().empty());
 }
 
-// Some write and read the same entry for a while, some of them are killed at any moment, and somebody spoils the file
-// in between.
+// Six processes use the same entry for a while and spoil its file; two of them are killed at any moment.
 TEST_P(Cache, SurvivesWritersAndKills) {
   const fs::path file = entry();
   std::vector<pid_t> children;
@@ -259,7 +260,7 @@ TEST_P(Cache, SurvivesWritersAndKills) {
   EXPECT_EQ(sleigh().check(folder_), "");
 }
 
-// Sparse files: large, and no burden.
+// The files are sparse: large, without much space on the disk.
 TEST_P(Cache, IsBounded) {
   const auto make = [&](const std::string& name, std::uintmax_t size, std::chrono::hours age) {
     const fs::path file = folder_ + "/" + name;
@@ -281,7 +282,7 @@ TEST_P(Cache, IsBounded) {
   EXPECT_TRUE(fs::exists(fresh)) << "of a process that may be writing";
 }
 
-// What is used counts as new.
+// An entry that is used counts as new.
 TEST_P(Cache, KeepsWhatIsUsed) {
   const fs::path file = entry();
   fs::last_write_time(file, ago(1000h));
@@ -289,7 +290,7 @@ TEST_P(Cache, KeepsWhatIsUsed) {
   EXPECT_GT(fs::last_write_time(file), ago(1h));
 }
 
-// One on a machine that can run what the compiler makes, none on another.
+// The suite has one instance if the compiler is expected here, else none.
 INSTANTIATE_TEST_SUITE_P(Folders, Cache, testing::Range(0, test::compiler_expected() ? 1 : 0));
 
 #endif

@@ -23,7 +23,7 @@ import types
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-os.environ.setdefault("ANHOLON_CACHE", "")  # nothing is kept in the user's home
+os.environ.setdefault("ANHOLON_CACHE", "")  # no compiled code is kept in the home folder
 
 try:
     import numpy
@@ -35,13 +35,13 @@ SHIPPED = ["disc", "luo-zhao-example-2", "snakeboard", "rheonomic-order-1", "sec
            "mass-depends-on-velocity", "falling-chain", "appell-hamel", "trailers", "constant-jerk", "third-order-linear",
            "rheonomic-order-2", "launcher"]  # fmt: skip
 FLAGS = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off"]
-SAME = 1e-10  # relative, of two ways to compute the same
-MOTION = 1e-8  # of the Runge-Kutta method with its step, against the Taylor series
+SAME = 1e-10  # relative difference of two ways to compute the same number
+MOTION = 1e-8  # difference of the Runge-Kutta method with its step from the Taylor series
 STEPS = {"rattleback": 800}  # its Euler angles turn fast
 DOUBLE = ctypes.POINTER(ctypes.c_double)
 
 AWKWARD = {
-    # What C, Python and the generated text use themselves, as names; a title that would end a comment.
+    # Names that C, Python and the generated text use themselves; a title that would end a comment.
     "names": r'''
 title = "*/ /* \"\"\" \\ ??/ $x$ \u2028 \u202e end"
 coordinates = ["x", "x_1", "int", "p", "state", "w1", "w2"]
@@ -151,7 +151,7 @@ z = 0.1
 "x'" = 0.1
 "y'" = 0.5
 ''',
-    # Two inputs are arguments; one stands in a constraint that is differentiated, and stays a formula.
+    # Two inputs are arguments; one occurs in a constraint that is differentiated, and stays a formula.
     "inputs": '''
 coordinates = ["x", "y", "z"]
 [parameters]
@@ -263,7 +263,7 @@ def same(values, reference, what, tolerance=SAME, floor=1e-3):
 
 
 def given(point, names, otherwise):
-    """Values of a point; of the rate of a state, which no table shows, the value that is computed otherwise."""
+    """Values of a point; the rate of a state, which no table shows, has the value that is computed otherwise."""
     return [point.known.get(name, value) for name, value in zip(names, otherwise, strict=True)]
 
 
@@ -305,7 +305,7 @@ class Compiled:
         return (ctypes.c_double * max(1, len(values)))(*values)
 
     def given(self, function):
-        """The inputs as an argument, where the function has one."""
+        """The inputs as an argument, if the function has one."""
         if not self.input_names or function in ("hidden", "inputs"):
             return []
         return [ctypes.cast(None, DOUBLE) if self.u is None else self.array(self.u)]
@@ -327,10 +327,10 @@ class Compiled:
 
 
 def gathered(path, known):
-    """A program keeps one of two constraints that say the same; `evaluate` and `simulate` spread the reaction over both."""
+    """A program keeps one of two equivalent constraints; `evaluate` and `simulate` spread the reaction over both."""
     if Path(path).stem == "redundant":
         known["lambda.edge"] += 2 * known["lambda.twice"]  # the second is twice the first
-    if Path(path).stem == "tether-by-servo" and "pull" in known:  # its reaction is an input, and in rows goes by that name
+    if Path(path).stem == "tether-by-servo" and "pull" in known:  # its reaction is an input, whose name it has in rows
         known["lambda.reel"] = known["pull"]
     return known
 
@@ -372,7 +372,7 @@ def check_c(c, points, hidden_count):
             outputs = c.out("outputs", len(c.output_names), t, state, solved)
             same(outputs, given(point, c.output_names, outputs), f"C outputs at {t}")
         same(c.out("hidden", hidden_count, t, state), [0] * hidden_count, f"C hidden at {t}", SAME, floor=1)
-    # The jacobian, against differences of the residual at a state that satisfies nothing.
+    # The jacobian is compared with differences of the residual at a state that satisfies no equation.
     state, lead = off(state, 0.01), off(lead, 0.1)
     jacobian = c.out("jacobian", n * n, t, state, lead)
     for j in range(n):
@@ -416,7 +416,7 @@ def check_python(module, c, points, hidden_count):
 
 
 def check_many(module, c, t, state):
-    """Many states at once, of which one has no solution, are as each alone; the elimination is as Newton's method."""
+    """Many states at once, one of them without a solution, give the values of each alone; the elimination agrees with Newton's method."""
     states = numpy.array([off(state, 0.003 * k) for k in range(5)]).T.copy()
     states[:, 3] = numpy.nan
     rates = module.rhs(t, states)
@@ -459,7 +459,7 @@ def check_events(c, module, point):
 
 
 def check_motion(c, points, steps):
-    """Runge and Kutta with the generated right side, from the first point to the second."""
+    """Integrates by Runge-Kutta with the generated right side from the first point to the second."""
     t, y, h = points[0].t, points[0][c.state_names], (points[1].t - points[0].t) / steps
     f = lambda t, y: c.solved("rhs", len(y), t, y)  # noqa: E731
     for k in range(steps):
@@ -473,7 +473,7 @@ def check_motion(c, points, steps):
 
 
 def check_set(c, program, name, path):
-    """A parameter changed in p, and those that depend on it, are as with --set."""
+    """A parameter changed in p, with those that depend on it, gives the values of --set."""
     c.p[c.parameter_names.index(name)] *= 1.25
     changed = c.p[c.parameter_names.index(name)]
     c.call("derived", None, c.p)
@@ -483,7 +483,7 @@ def check_set(c, program, name, path):
 
 
 def check_inputs(c, module, program, path):
-    """The inputs by their formulas are those of the model; one set from outside acts as its formula with that value."""
+    """The inputs by their formulas have the values of the model; an input set from outside acts as its formula with that value."""
     if c.input_names != ["push", "steer"]:
         raise Failure(f"the inputs are {c.input_names}")
     point = Point.evaluated(program, path)
@@ -501,7 +501,7 @@ def check_inputs(c, module, program, path):
 
 
 def check_powers(c, module):
-    """A whole exponent that is set in p serves coordinates that are negative or zero, too."""
+    """A whole exponent that is set in p also works for coordinates that are negative or zero."""
     c.p[c.parameter_names.index("n")] = 3
     for x, y in ((-0.5, -0.4), (0.0, 0.0), (-0.3, 0.7)):
         expected = [(-3 * x**3 - y**3 * x**4) / 2, (-9 * y * (1 + y * y) ** 0.5 - 2 * y**2) / 2]
@@ -511,7 +511,7 @@ def check_powers(c, module):
 
 
 def check_refusal(c, module, state, status):
-    """Where there is no answer, C says why, and Python raises or gives nan."""
+    """If there is no answer, C gives the reason, and Python raises or gives nan."""
     got = c.call("leading", 0.0, c.array(state), c.p, c.array([0.0] * len(c.lead_names)))
     if got != status:
         raise Failure(f"leading at {state} returns {got}, not {status}")
@@ -527,7 +527,7 @@ def check_refusal(c, module, state, status):
 
 
 def flipped(text):
-    """The last sum of the residual, where nothing cancels any more, with a sign turned."""
+    """The text with the last sign of the residual's sums reversed; nothing cancels after it any more."""
     c = "#include" in text
     begin = text.rindex("_residual(double t") if c else text.index("def residual")
     end = text.index("\n}\n" if c else "return out", begin)
@@ -564,10 +564,10 @@ def check(program, form, name, path, folder):
         try:
             with numpy.errstate(all="ignore") if numpy else contextlib.nullcontext():
                 mutant()
-        except (Failure, ArithmeticError):  # or it has no solution
+        except (Failure, ArithmeticError):  # or the system has no solution
             continue
         raise Failure("a flipped sign in the residual was not noticed")
-    if name == "appell-hamel":  # its constraint has no hold on a body at rest
+    if name == "appell-hamel":  # its constraint does not determine the motion of a body at rest
         check_refusal(c, module, [0, 0, 10, 0, 0, 0], 1)
     if name == "functions":  # the logarithm of a negative number
         check_refusal(c, module, [0.4, -10, 0.2, 0.3, -0.5, -0.2], 3)

@@ -1,5 +1,5 @@
-// One body, all backends: the Taylor coefficients of every shipped model at its start and on its way, by the
-// interpreted tape (the reference), by the kernel in every tier of this machine, in lanes, and compiled.
+// The Taylor coefficients of every shipped model, at its start and along its motion, agree in all backends: the
+// interpreted tape (the reference), the kernel in every tier of this machine, in lanes, and machine code.
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kStages = 12;
 
-// Shipped models without a kernel, and without machine code, and why.
+// The shipped models without a kernel, and those without machine code, each with the reason.
 using Reasons = std::map<std::string, std::string>;
 constexpr const char *kNonlinear = "the leading derivatives enter nonlinearly",
                      *kLarge = "it is too large to be compiled in a short time";
@@ -37,7 +37,7 @@ const Reasons kNotCompiled{{"zoo/whipple", kLarge}, {"asked/uneven-street", kLar
 // Models whose code takes seconds to compile: in lanes, their motions are compared under ANHOLON_LONG=1 only.
 const std::set<std::string> kLongest{"zoo/rattleback", "zoo/spherical-robot", "papers/luo-zhao-example-1"};
 
-// Models with a kernel in quasi-velocities, which is compared as another motion, that of its own unknowns.
+// Models that have a kernel in quasi-velocities, which is compared in its own unknowns.
 const std::string kInQuasi = "in quasi-velocities: ";
 const std::vector<std::string> kQuasi{
     kInQuasi + "zoo/disc",       kInQuasi + "zoo/chaplygin-sleigh",  kInQuasi + "zoo/trailers",
@@ -74,7 +74,7 @@ struct Reference {
     }
     return no_plan(*stepping);
   }
-  // Each time another one.
+  // Returns a new plan at each call.
   std::shared_ptr<const KernelPlan> plan() const {
     const double t = static_cast<double>(start.t);
     if (!quasi) return KernelPlan::make(stepping, kStages, parameters, t, narrow(start.state));
@@ -97,11 +97,10 @@ struct Reference {
   std::shared_ptr<const Program> stepping, derived;
   std::vector<long double> parameters;
   Start<long double> start, motion_start;
-  std::string why;  // there is no kernel
+  std::string why;  // the reason why there is no kernel, or empty
 };
 
-// All coefficients, order by order in relation to the largest of that order (of the terms they are made of there is no
-// word).
+// The largest difference of the coefficients, in units of the largest coefficient of the same order.
 template <class Coefficient>
 double difference(const KernelPlan& plan, const Expansion<long double>& reference, const Coefficient& coefficient) {
   const Plan& p = plan.plan();
@@ -124,7 +123,7 @@ double difference(const KernelPlan& plan, const Expansion<long double>& referenc
 
 bool same(double a, double b) { return a == b || (a != a && b != b); }
 
-// What two kernels say of a motion, in a lane of each: the first difference, or nothing.
+// Compares the motions in a lane of each kernel. Returns the name of the first difference, or an empty text.
 std::string difference_of_motions(const Kernel& a, int lane_a, const Kernel& b, int lane_b) {
   if (!same(a.pivots(lane_a).health, b.pivots(lane_b).health)) return "health";
   if (!same(a.pivots(lane_a).determinant, b.pivots(lane_b).determinant)) return "determinant";
@@ -148,7 +147,8 @@ std::string difference_of_motions(const Kernel& a, int lane_a, const Kernel& b, 
   return equal(x, y) ? "" : "base";
 }
 
-// Where a lane's motion starts: at the start, without a value, far from the constraints, a little off.
+// The initial state of a lane: the start in lane 0, one without a value in lane 1, one far from the constraints in lane
+// 2, one a little off in the others.
 std::vector<long double> start_of_lane(const Reference& r, int lane) {
   std::vector<long double> state = r.start.state;
   if (lane == 1)
@@ -161,7 +161,7 @@ std::vector<long double> start_of_lane(const Reference& r, int lane) {
 }
 
 constexpr int kSteps = 3;
-// Expanded, and after the step, `compare` is asked what differs.
+// Makes kSteps steps with all kernels; calls `compare` after every expansion and after every step.
 template <class Compare>
 void walk(const Reference& r, std::initializer_list<Kernel*> kernels, const Compare& compare) {
   std::vector<double> t;
@@ -199,13 +199,13 @@ TEST_P(KernelOf, EqualsTheInterpretedTape) {
   const auto plan = r.plan();
   ASSERT_TRUE(plan);
   Expansion<long double> reference(*r.stepping, r.parameters, kStages);
-  // From the same numbers.
+  // Both expand at the same numbers.
   const std::vector<double> state = Reference::narrow(r.start.state);
   reference.load(static_cast<double>(r.start.t), {state.begin(), state.end()}, r.start.leading);
   ASSERT_TRUE(reference.prepare().ok());
   ASSERT_TRUE(reference.solve().ok());
   ASSERT_TRUE(reference.extend().ok());
-  // What the interpreter itself loses in double.
+  // The error of the interpreter itself in double.
   Expansion<double> plain(*r.stepping, Reference::narrow(r.parameters), kStages);
   plain.load(static_cast<double>(r.start.t), state, Reference::narrow(r.start.leading));
   ASSERT_TRUE(plain.prepare().ok());
@@ -225,7 +225,7 @@ TEST_P(KernelOf, EqualsTheInterpretedTape) {
   }
 }
 
-// The same coefficients from every writing of the equations.
+// The kernel of every writing of the equations has the coefficients of the interpreted tape.
 TEST_P(WritingsOf, EqualTheInterpretedTape) {
   const Reference r(GetParam());
   ASSERT_EQ(r.why, "");
@@ -246,7 +246,7 @@ TEST_P(WritingsOf, EqualTheInterpretedTape) {
       kernel.expand();
       return difference(*p, reference, [&](std::size_t j, int order) { return kernel.coefficient(j, order); });
     }
-    // Of its coordinates, up to the order that it knows.
+    // A kernel in quasi-velocities is compared in its coordinates, up to the order that it knows.
     std::vector<long double> own;
     kernel.reader(0).own(t, {state.begin(), state.end()}, own);
     kernel.load<long double>(0, t, own, {});
@@ -262,8 +262,8 @@ TEST_P(WritingsOf, EqualTheInterpretedTape) {
     EXPECT_LT(off_by(w.plan), 1e-12 + 10 * derived) << name(w.writing);
 }
 
-// Every lane has the bits of a kernel of one lane, whatever its neighbours do: other states, one of them without a
-// value, one far from the constraints.
+// Every lane has the bits of a kernel of one lane, whatever the states of its neighbours are: one of them has no value,
+// one is far from the constraints.
 TEST_P(KernelOf, LanesHaveTheSameBits) {
   const Reference r(GetParam());
   ASSERT_EQ(r.why, "");
@@ -304,8 +304,8 @@ TEST_P(KernelOf, LanesHaveTheSameBits) {
   }
 }
 
-// Machine code against the table-driven arithmetic: the same bits, from the same numbers, also where the arena holds
-// another expansion's.
+// Machine code and the table-driven arithmetic have the same bits at the same numbers, even if the arena holds the
+// numbers of another expansion.
 TEST_P(CompiledKernelOf, HasTheSameBits) {
   const Reference r(GetParam());
   ASSERT_EQ(r.why, "");
@@ -314,7 +314,7 @@ TEST_P(CompiledKernelOf, HasTheSameBits) {
   Kernel a(plain), b(compiled);
   for (Kernel* k : {&a, &b}) k->set_parameters(0, r.parameters);
   std::vector<double> state = Reference::narrow(r.start.state);
-  // What is made quickly is replaced by what is made with effort, not the other way round.
+  // Code made with effort replaces code made quickly, not the other way round.
   for (const auto& [effort, shift] :
        {std::pair(CodeEffort::quick, 0.0), std::pair(CodeEffort::full, 1e-3), std::pair(CodeEffort::quick, 1e-3)}) {
     const std::string why = compiled->compile({}, 1, effort);
@@ -338,7 +338,7 @@ TEST_P(CompiledKernelOf, HasTheSameBits) {
   }
 }
 
-// The same of motions: what is said of pivots, projection, reach and the next state; alone and in lanes.
+// Machine code and tables agree in motions: in pivots, projection, reach and the next state, alone and in lanes.
 TEST_P(CompiledKernelOf, MovesWithTheSameBits) {
   const Reference r(GetParam());
   ASSERT_EQ(r.why, "");
@@ -394,7 +394,7 @@ TEST_P(KernelOf, LanesMoveWithTheSameBits) {
           t[at] += h;
           one.advance();
         }
-        // A lane is projected with others; where a motion has no value, that may leave other traces of it.
+        // Lanes are projected together; a motion without a value may leave other traces in its lane.
         if (lane == 1) continue;
         EXPECT_EQ(difference_of_motions(lanes, lane, one, 0), "") << tier.name << " lane " << lane;
       }
@@ -413,8 +413,8 @@ INSTANTIATE_TEST_SUITE_P(Quasi, CompiledKernelOf, testing::ValuesIn(kQuasi),
 INSTANTIATE_TEST_SUITE_P(Model, CompiledKernelOf, testing::ValuesIn(shipped_except({kWithoutKernel, kNotCompiled})),
                          [](const auto& p) { return test::test_name(p.param); });
 
-// The start of the present expansion and of the one before are kept, whether the kernel went on from there or was told
-// where to.
+// The kernel keeps the start of the present expansion and that of the one before, whether it continues from its own
+// step or is placed at a given state.
 TEST(Kernels, KeepTheirLastTwoStarts) {
   const Reference r("zoo/chaplygin-sleigh");
   ASSERT_EQ(r.why, "");
@@ -459,8 +459,8 @@ TEST(Kernels, KeepTheirLastTwoStarts) {
   }
 }
 
-// Angles that have turned 1000 times, known to the digits of long double: a coordinate, and the sum of two of them.
-// Where a pivot is small, refinement gives back what the elimination loses.
+// Angles have turned 1000 times and are known to the digits of long double: a coordinate, and the sum of two of them.
+// If a pivot is small, refinement restores the digits that the elimination loses.
 TEST(Kernels, KeepTheirDigitsWithSmallPivotsIfTheyRefine) {
   constexpr int kLinks = 300, kStates = 12;
   const Reference r(test::model_of(test::chain_text(kLinks)));
@@ -532,15 +532,16 @@ b = 0.5
     kernel.place(0, state, r.start.leading);
     kernel.set_time(0, 0);
     kernel.begin();
-    // As doubles the angles are off by 5e-13.
+    // In doubles the angles would be off by 5e-13.
     EXPECT_LT(difference(*plan, reference, [&](std::size_t j, int order) { return kernel.coefficient(j, order); }),
               2e-14)
         << tier.name;
   }
 }
 
-// The inverse for the unknowns alone, all that depends on them by its own row: of so many links, alone and in lanes, to
-// the same bits.
+// Plans of chains hold the inverse for the unknowns alone, and solve all columns that depend on these by their own
+// rows, up to a number of links that differs between motions alone and in lanes. Tables and machine code have the same
+// bits.
 TEST(Kernels, InvertForManyUnknowns) {
   const std::string chain = test::shipped_text("zoo/chain");
   for (const auto& [links, company, inverted] : {std::tuple(6, Company::alone, true),
@@ -579,7 +580,7 @@ TEST(Kernels, InvertForManyUnknowns) {
   }
 }
 
-// What is filled in grows with the links: the recursion of articulated bodies.
+// The entries of the elimination grow linearly with the links, as in the recursion of articulated bodies.
 TEST(Kernels, EliminateChainsLinkByLink) {
   const std::string chain = test::shipped_text("zoo/chain");
   for (const std::size_t links : {8, 16, 32, 64, 150, 300}) {
@@ -593,7 +594,7 @@ TEST(Kernels, EliminateChainsLinkByLink) {
   }
 }
 
-// Code of plans of one stage that are too large for the compiler is translated, with the bits of the tables.
+// Plans of one stage that are too large for the compiler are translated; their code has the bits of the tables.
 TEST(Kernels, OfLargePlansAreTranslated) {
   if (!compiler()) GTEST_SKIP() << "no compiler beside the program";
   for (const auto& [name, why] : kNotCompiled) {
@@ -630,7 +631,7 @@ TEST(Kernels, OfLargePlansAreTranslated) {
   }
 }
 
-// The other direction: who is on a list belongs there, for the reason given.
+// The converse: every model on a list belongs there, for the given reason.
 TEST(Kernels, AreMissingForTheseReasonsOnly) {
   for (const auto& [name, why] : kWithoutKernel) EXPECT_EQ(Reference(name).why, why) << name;
 }
@@ -643,7 +644,7 @@ TEST(Kernels, AreNotCompiledForTheseReasonsOnly) {
   }
 }
 
-// Where none was built, that of another build may lie beside.
+// A build without a compiler may find the compiler of another build beside it.
 TEST(Kernels, HaveACompilerWhereOneWasBuilt) { EXPECT_TRUE(compiler() || !test::compiler_expected()); }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Isomorphic steps of one motion in lanes: who shares a vector with whom, and the same bits as one by one.
+// Isomorphic steps of one motion in lanes: which series share a vector, and that the bits are those of steps one by
+// one.
 #include <cmath>
 #include <cstdlib>
 #include <set>
@@ -46,7 +47,7 @@ std::shared_ptr<const Model> chain(int links) {
   return test::model_of(test::replaced(test::shipped_text("zoo/chain"), "n = 4", "n = " + std::to_string(links)));
 }
 
-// Of every shipped model: what lies side by side is what the lanes need.
+// In the packs of every shipped model, the series that lie side by side are those that the lanes need.
 TEST(Packs, HoldEachSumOnceInTheLanesOfItsSeries) {
   std::size_t packed = 0;
   for (const std::string& name : test::moving_models()) {
@@ -93,8 +94,8 @@ TEST(Packs, HoldEachSumOnceInTheLanesOfItsSeries) {
   EXPECT_GT(packed, 500U);
 }
 
-// Eight links: two packs of sines and two of cosines, and as many of their products with the tensions. Sines and
-// cosines of four links share their angles, their products share them.
+// Eight links have two packs of sines and two of cosines, and as many of their products with the tensions. The sines
+// and cosines of four links share their angles; the products share the sines and cosines.
 TEST(Packs, FollowTheLinksOfAChain) {
   Motion m(chain(8));
   ASSERT_TRUE(m.plan);
@@ -134,8 +135,8 @@ void expect_same_bits(const Motion& m, const std::string& what) {
     }
 }
 
-// Numbers of links that fill no vector, orders that fill no block, chains with lengths of their own: nothing changes
-// but the time.
+// The packs change the time only, also for numbers of links that fill no vector, orders that fill no block and chains
+// of unequal links.
 TEST(Packs, ChangeNoBit) {
   const std::string text = test::shipped_text("zoo/chain");
   std::string uneven = test::replaced(text, "l = 0.2", "\"l[i]\" = 0.2");
@@ -150,7 +151,8 @@ TEST(Packs, ChangeNoBit) {
     }
 }
 
-// Plans whose code is in pieces: orders that fill no block, one block, several; with refined solutions and without.
+// Plans whose code is in pieces, with orders that fill no block, one block or several, with refined solutions and
+// without.
 TEST(Pieces, ChangeNoBit) {
   const std::string text = test::shipped_text("zoo/chain");
   int all = 0, refined = 0;

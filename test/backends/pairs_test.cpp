@@ -1,5 +1,5 @@
-// Straight-line code in pairs of doubles: against Quad and long double, in every tier, with the same bits in all
-// lanes; the map of quasi-velocities by it against the one in long double.
+// Straight-line code in pairs of doubles agrees with Quad and long double in every tier and has the same bits in all
+// lanes; the map of quasi-velocities in pairs agrees with the one in long double.
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -16,7 +16,7 @@
 namespace anholon::pairs_test {
 namespace {
 
-// One step of that kind over operands in all lanes of a tier: sine and cosine to places 1 and 2.
+// Makes one step of the kind `act` in all lanes of a tier; sine and cosine go to places 1 and 2.
 std::vector<double> run(const Tier& tier, PairProgram::Act act, const std::vector<std::array<double, 2>>& a,
                         const std::array<double, 2>& b) {
   const auto lanes = static_cast<std::size_t>(tier.lanes);
@@ -103,8 +103,8 @@ TEST(Pairs, HaveTheSameBitsInAllLanesAndTiers) {
   }
 }
 
-// Velocities from quasi-velocities along a motion: those of the reader in long double to its round-off, alone and beside
-// others. The models hold sines, quotients, roots and powers.
+// Velocities from quasi-velocities along a motion agree with those of the reader in long double to its round-off, alone
+// and beside other lanes. The models hold sines, quotients, roots and powers.
 class MapsOf : public testing::TestWithParam<const char*> {};
 
 TEST_P(MapsOf, AreThoseOfTheReaderInLongDouble) {
@@ -133,7 +133,7 @@ TEST_P(MapsOf, AreThoseOfTheReaderInLongDouble) {
       ASSERT_NE(state.empty(), own.empty());
       if (!own.empty()) readers.load(lane, t_of(lane), own), owns.push_back(own);
     }
-    if (owns.empty()) continue;  // a step of the reference
+    if (owns.empty()) continue;  // the reference made this step
     ++compared;
     readers.convert();
     for (int lane = 0; lane < lanes; ++lane) {

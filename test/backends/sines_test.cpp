@@ -1,4 +1,4 @@
-// Sines and cosines of the kernels: against long double, in every tier, and the same bits in all lanes.
+// Sines and cosines of the kernels agree with long double in every tier and have the same bits in all lanes.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,7 +13,7 @@ namespace {
 
 bool fused(const Tier& tier) { return std::string(tier.name) != "plain"; }
 
-// Near multiples of a quarter turn, small and large, both signs.
+// Angles near multiples of a quarter turn, small and large, of both signs.
 std::vector<double> angles() {
   std::vector<double> list{0.0, -0.0, 1e-300, 1e-20, 1e-8, 0.5, 0x1p27, -0x1p27, 0x1.fffffffffffffp26, 1e10, 1e22};
   constexpr long double kHalfPi = 1.57079632679489661923132169163975144L;
@@ -27,8 +27,8 @@ std::vector<double> angles() {
   return list;
 }
 
-// Below 1e-8, near multiples of a quarter turn, pi/2 in two doubles is not enough for all places: for an absolute error
-// of 1e-24 it is.
+// The error of `have` in units of the last place of `want`, or of 1e-8 if `want` is smaller: near multiples of a
+// quarter turn, pi/2 in two doubles suffices for an absolute error of 1e-24, but not for all places.
 double units(double have, long double want) {
   const double size = std::max(std::abs(static_cast<double>(want)), 1e-8),
                ulp = std::nextafter(size, 2 * size + 1) - size;
@@ -57,7 +57,7 @@ TEST(Sines, AreRightToTheLastPlace) {
   }
 }
 
-// Where the angle is known to more digits than a double has, the sine of those digits.
+// If the angle is known to more digits than a double has, the sine is that of all these digits.
 TEST(Sines, KnowWhatAnAngleIsBeyondItsDouble) {
   for (const Tier& tier : tiers())
     for (const double x : angles()) {

@@ -1,5 +1,5 @@
-// Reading a prepared system never changes it: what was asked of it before, and what others ask of it at the same time,
-// has no influence on the bits of a motion.
+// Reading a prepared system never changes it: neither earlier requests nor requests in other threads change the bits of
+// a motion.
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ auto motion_in(Workspace& s, const SimulationOptions& o) {
   return std::pair(sink.rows(), std::vector<double>{r.newton, r.projected, r.power, r.constraints});
 }
 
-// All that builds expressions.
+// Calls the functions that build expressions.
 void ask(const Scenario& s) {
   StateReport report;
   evaluate(s, {}, 16, report);
@@ -71,7 +71,8 @@ TEST_P(ConstScenario, GivesTheMotionThatItGaveBefore) {
 INSTANTIATE_TEST_SUITE_P(Model, ConstScenario, testing::ValuesIn(test::moving_models()),
                          [](const auto& p) { return test::test_name(p.param); });
 
-// The mutant: what a motion builds is there already, built in another order, and so are the terms of its sums.
+// The mutant: a workspace already holds the expressions that a motion builds, built in another order, as are the terms
+// of its sums.
 TEST(ConstScenarioOf, AWorkspaceThatHasGrownIsSeen) {
   std::size_t differ = 0;
   for (const std::string& name : test::moving_models()) {
@@ -92,7 +93,7 @@ TEST(ConstScenarioOf, AWorkspaceThatHasGrownIsSeen) {
   EXPECT_GT(differ, 0U);
 }
 
-// A form, and whether coordinates are eliminated anew on the way.
+// A model, a form of its equations and the end of its motion. Some motions eliminate coordinates anew on the way.
 struct Shared {
   const char *model, *form;
   int end;

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""The digits to trust, against the digits that are true.
+"""The digits to trust, compared with the digits that are true.
 
 Each motion of MOTIONS, and each shipped model with one of its parameters changed, is computed once with 30 digits or more, then by several
-methods, tolerances and number types, at the same times; sweeps by the final states of the cases that they compare. The true error of each kind of columns is compared with what `simulate` claims: none may be above ten times the claim
+methods, tolerances and number types, at the same times; sweeps are judged by the final states of the cases that they compare. The true error of each kind of columns is compared with what `simulate` claims: none may be above ten times the claim
 without a warning in the report, and the median of true error over claim must lie between 0.1 and 1.
 
     run.py PROGRAM [--all] [--jobs N] [--only TEXT] [--verbose] [--self-test]
 
 Without --all (or ANHOLON_LONG=1) every eighth motion is taken. The scale of a column is the one that doc/results.md describes. The
-self-test makes every claim a hundred times smaller, and must find that out.
+self-test makes every claim a hundred times smaller, which must be noticed.
 """
 import argparse
 import concurrent.futures
@@ -38,7 +38,8 @@ def force(vector, more=""):
     return f'{more}force = [{{on = "p", vector = "{vector}"}}]\n'
 
 
-# Models that no shipped one stands for: chaos in states, stiffness, fast phases, small motions, kinks, tables, events.
+# Models of kinds that no shipped model has: chaos in states, stiffness, fast phases, small motions, kinks, tables,
+# events.
 TEXTS = {
     "lorenz": PARTICLE + '[state]\na = {rate = "10*(b - a)", initial = 1}\nb = {rate = "a*(28 - c) - b", initial = 1}\nc = {rate = "a*b - 8*c/3", initial = 1}\n[initial]\nx = 1\n"x\'" = 1\n',
     "van-der-pol": PARTICLE.replace("particle", 'parameters = {mu = 100}\nparticle', 1) + force("(mu*(1-x^2)*x'-x)*ex") + '[initial]\nx = 2\n"x\'" = 0\n',
@@ -98,21 +99,21 @@ WAYS = [
     "", "--tolerance 1e-8", "--method rk --tolerance 1e-9", "--integrator cvode --tolerance 1e-9", "--tolerance 2e-16", "--method bdf --tolerance 1e-7", "--integrator ida --tolerance 1e-8",
     "--method rk --tolerance 1e-5", "--numbers long-double --tolerance 1e-18", "--tolerance 1e-4", "--every-step", "--form chaplygin",
 ]
-# They stand behind the others, so that the choice of a short run stays as it is.
+# They come after the others, so that the choice of a short run does not change.
 FAR = [("far-centre", "", 5, 40), ("far-centre", "", 500, 40)]
-# Shipped models and their ends: with another parameter, and in sweeps over it.
+# Shipped models and their end times, with another parameter and in sweeps over it.
 VARIED = {"zoo/" + k: v for k, v in {
     "appell-hamel": 1.5, "appell-hamel-regularised": 1.5, "ball-on-turntable": 1.5, "car-three-trailers": 1.5, "chaplygin-sleigh": 6, "constant-acceleration": 1.5, "constant-jerk": 1.5, "disc": 2.5,
     "double-pendulum-cartesian": 1.5, "fourbar": 0.6, "isokinetic": 0.8, "mass-depends-on-velocity": 3, "rheonomic-order-1": 0.8, "rheonomic-order-2": 0.4, "rocket": 3, "rolling-coin": 1.5,
     "second-order-linear": 1.5, "snake": 1, "snakeboard": 1.5, "third-order-linear": 0.8, "trailers": 1.5, "variable-mass-pendulum": 5, "vertical-disc": 4, "whipple": 0.7,
 }.items()} | {"papers/luo-zhao-example-1": 1.5, "papers/luo-zhao-example-2-regular": 3, "templates/cart": 2, "templates/pendulum": 4, "templates/rolling": 1.5, "templates/vehicle": 1.5}
 
-# Of these each motion gets the first ones, then some of the others.
+# Each motion gets the first ALWAYS of these ways, then OTHERS of the rest.
 ALWAYS, OTHERS = 2, 3
 
 
 def simulate(program, arguments, seconds=SECONDS):
-    """The JSON of a run, or the message where it was refused."""
+    """The JSON of a run, or the message if it is refused."""
     try:
         done = subprocess.run([program, "simulate", *arguments, "--json", "--quiet"], capture_output=True, text=True, timeout=seconds,
                               env={**os.environ, "ANHOLON_CACHE": "", "NO_COLOR": "1"}, check=False)
@@ -123,7 +124,7 @@ def simulate(program, arguments, seconds=SECONDS):
     return json.loads(done.stdout, parse_float=Decimal, parse_int=Decimal), ""
 
 
-STARTS = {"zoo/falling-chain": 1}  # where it is not 0
+STARTS = {"zoo/falling-chain": 1}  # start times that are not 0
 
 
 def times_of(name, end):
@@ -133,7 +134,7 @@ def times_of(name, end):
 
 
 def kinds_of(columns, run):
-    """Kind of each column, by the order in which rows have them."""
+    """The kind of each column, by the order of columns in rows."""
     coordinates = [c[2:] for c in columns if c.startswith("N.")]
     first_reaction = columns.index("N." + coordinates[0]) if coordinates else len(columns)
     known = {k["kind"] for k in run["error_estimate"].get("kinds", [])}
@@ -197,7 +198,7 @@ def true_errors(run, reference, tolerance, roundoff):
 
 
 def changed_parameter(name):
-    """One of the numbers of a shipped model, and what it is."""
+    """One of the parameters of a shipped model, with its value."""
     with open(ROOT / "models" / (name + ".toml"), "rb") as file:
         numbers = [(k, v) for k, v in tomllib.load(file).get("parameters", {}).items() if isinstance(v, (int, float)) and v != 0 and "[" not in k]
     return numbers[zlib.crc32(name.encode()) % len(numbers)]
@@ -247,7 +248,7 @@ def judge(program, motion, way, common):
         return label, [], f"no claim: {estimate and estimate['reason']}"
     reference = common
     if every_step:
-        # The rows where the numbers change fastest, and some others.
+        # Keeps the rows where the numbers change fastest, and some others.
         rows = run["rows"]
         pace = sorted(range(1, len(rows)), key=lambda i: -max(float(abs(a - b)) for a, b in zip(rows[i][1:], rows[i - 1][1:])) / max(float(rows[i][0] - rows[i - 1][0]), 1e-300))
         chosen = sorted({*pace[:20], *range(1, len(rows), max(1, len(rows) // 20)), len(rows) - 1})
@@ -342,7 +343,7 @@ def tell(results, verbose):
         if why:
             refused.append(f"{label}: {why}")
         for ratio, error, claim, kind, column, t, warned in lines:
-            # What is exact but for the last digit written says nothing of the estimate.
+            # A number that is exact but for its last written digit does not test the estimate.
             if claim > 4e-16 or error > claim:
                 ratios.append(ratio)
                 by_kind.setdefault(kind, []).append(ratio)

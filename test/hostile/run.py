@@ -2,21 +2,20 @@
 """Hostile models: contradictory, degenerate, redundant, wrong, absurd. None may crash, hang or fill memory.
 
     run.py --program PROGRAM [--no-limits | --seconds S] [NAME...]
-    run.py --self-test                                   each fault is found in a program that has it
+    run.py --self-test                                   each fault is noticed in a program that has it
 
-Every model of this folder goes through `check`, `simulate`, `evaluate` and `derive`, those that are too large to be stored (made
-below) through the first two, each with limits of processor time and memory. The limit of time tells a hang from work: the
-slowest command takes 1.6 s, and no neighbour's load may fail the test; `--seconds 2` asks whether
-each command ends within two seconds on a quiet one. The first line of a model says what must come of it:
+Every model of this folder goes through `check`, `simulate`, `evaluate` and `derive`. Models that are too large to be stored (made
+below) go through the first two. Each command has limits of processor time and memory. The limit of time distinguishes a hang from
+work: the slowest command takes 1.6 s, and the load of other programs must not fail the test. With `--seconds 2` the test checks that
+each command ends within two seconds on a quiet machine. The first line of a model gives the expected result:
 
     # expects: ok
     # expects: error "these words"                     bad input: exit status 2, positioned in the file
     # expects: singular "the constraint 'c1'"          an outcome of that name: exit status 1
-    # expects: check ok; simulate blow_up/singular     where the commands differ; one of several
+    # expects: check ok; simulate blow_up/singular     if the commands differ; one of several
 
-`check` and `simulate` must end as it says, the others in any of these ways. Wherever a command ends with an error, the error
-names file, line and column (`# expects: file error …`: the file alone); wherever it ends with an outcome, the outcome has a
-name; what is asked for as JSON is JSON.
+`check` and `simulate` must end as expected, the others in any of these ways. An error names file, line and column
+(`# expects: file error …`: the file alone), an outcome has a name, and output requested as JSON is JSON.
 """
 
 import argparse
@@ -32,19 +31,19 @@ import sys
 import tempfile
 import threading
 
-os.environ.setdefault("ANHOLON_CACHE", "")  # nothing is kept in the user's home
+os.environ.setdefault("ANHOLON_CACHE", "")  # no compiled code is kept in the home folder
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 SECONDS = 10  # of processor time, for each command
 MEMORY = 1 << 30  # bytes of address space
-PATIENCE = 600  # seconds, for a command that sleeps
+PATIENCE = 600  # seconds, after which a sleeping command is killed
 COMMANDS = (
     ("check",),
     ("simulate", "--json"),
     ("evaluate", "--json"),
     ("derive",),
 )
-FEW = COMMANDS[:2]  # for those that take long to read
+FEW = COMMANDS[:2]  # for models that take long to read
 OUTCOMES = {
     "singular", "step_collapse", "blow_up", "negative_mass", "not_a_number", "no_convergence", "inconsistent",
     "interrupted", "too_large",
@@ -55,7 +54,7 @@ OUTCOMES = {
 
 
 class Expected:
-    """`ok`, `error`, `file error` or outcomes; the words of the message."""
+    """`ok`, `error`, `file error` or outcomes, with the words of the message."""
 
     def __init__(self, text):
         match = re.fullmatch(r'\s*([a-z_/ ]+?)\s*(?:"(.*)")?\s*', text)
@@ -160,13 +159,13 @@ def made():
 
 def limit(seconds):
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    # The soft limit ends a hang; what the command took is measured, not guessed from it.
+    # The soft limit ends a hang; the time of a command is measured.
     resource.setrlimit(resource.RLIMIT_CPU, (seconds + 1, seconds + 2))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def run(program, command, path, seconds):
-    """Exit code (negative: a signal), stdout, stderr, seconds of processor time; `seconds` is None where nothing is limited."""
+    """Exit status (negative: a signal), stdout, stderr, seconds of processor time; nothing is limited if `seconds` is None."""
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         limits = None if seconds is None else lambda: limit(seconds)
         process = subprocess.Popen([program, command[0], str(path), *command[1:], "--quiet"], stdout=out, stderr=err, preexec_fn=limits)
@@ -180,7 +179,7 @@ def run(program, command, path, seconds):
 
 
 def faults(name, path, expected, program, seconds, commands=COMMANDS):
-    """What is wrong, one line each."""
+    """The faults of a model, one line each."""
     positioned = re.compile(re.escape(str(path)) + r":\d+:\d+: error: .")
     whole = re.compile(r"(?:" + re.escape(str(path)) + r": )?error: .")
     for command in commands:
@@ -199,7 +198,7 @@ def faults(name, path, expected, program, seconds, commands=COMMANDS):
         if want and not want.met(code, errors):
             yield wrong(f"expected {want.kind} '{want.words}'")
         file_error = any(e.kind == "file error" for e in expected.values())
-        # An elimination that does not fit is no error of the file.
+        # An elimination that is not possible is no error of the file.
         of_the_file = command[0] in ("check", "simulate")
         if code == 2 and of_the_file and not (whole if file_error else positioned).search(errors):
             yield wrong("an error without a place")
@@ -276,7 +275,8 @@ def main():
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             commands = [COMMANDS if c[1].parent.parent == FOLDER else FEW for c in cases]
             found = list(pool.map(lambda c, many: list(faults(*c, program, seconds, many)), cases, commands))
-        # Two commands that share caches take longer than either alone, which is what the limit is for.
+        # Two commands that share caches take longer than either alone, so a command that exceeds the limit runs again
+        # by itself.
         for k, lines in enumerate(found):
             if any("processor time" in line for line in lines):
                 found[k] = list(faults(*cases[k], program, seconds, commands[k]))

@@ -4,8 +4,8 @@ of each that is there.
 
 usage: files_to_touch.py [PROGRAM] [--root DIR] [--self-test]
 
-With a PROGRAM the option is also looked for where it has to appear although no file names it there: in the help of each
-command that computes a motion, in the schema of [simulate] and its effect, in the provenance of a result.
+With a PROGRAM the option must also appear in places in which no file names it: in the help of each command that computes a
+motion, in the schema of [simulate] and its effect, in the provenance of a result.
 Result formats have a test of their own, formats_by_table.py; forms have new_form_test.cpp.
 """
 
@@ -30,19 +30,19 @@ class Kind:
     line: str  # a line that names it
     other: str  # a line that does not
     folders: tuple = ("src",)
-    not_needed: str = "$^"  # files that name it, and that a new one does without
+    not_needed: str = "$^"  # files that name the example although a new one does not need it
 
 
 KINDS = [
-    # The member of the settings, the row, what it means for one motion. Steppers have limits of that name, too.
+    # The member of the settings, the row, and its meaning for one motion. Limits of steppers have the same name.
     Kind("option of simulate", 3, r'"most-steps"|\*settings\.most_steps\b|\bmost_steps\(settings\)|&S::most_steps\b|optional<int> [\w, ]*\bmost_steps\b',
          "int n = *settings.most_steps;\n", "std::size_t n = settings.most_steps;  // as *settings.most_steps\n",
          # The library has a member for it; any other option is set by its name. Sweeps need not take one.
          not_needed=r"src/api/motion\.cpp|src/ensemble/request\.cpp"),
-    # The method's own files are the work itself; `auto` turns to it once somebody has measured when it pays.
+    # The method's own files are the work itself; `auto` chooses it only after measurements show when it is cheaper.
     Kind("method", 3, r'\bMethod::bdf\b|"bdf"|\bBdf\b|enum class Method [^}]*\bbdf\b', "bool b = m == Method::bdf;\n",
          "int g();  // as Method::bdf\n", not_needed=r"src/integrate/states/bdf\.(h|cpp)|src/motion/method_choice\.cpp"),
-    # What users of other programs write for it is a help, not a need.
+    # Names that users of other programs write for it are optional.
     Kind("elementary function", 4, r"(?<![A-Za-z_])(?:\w*_)?atanh\b", "Ball g(Ball x) { return arb_atanh(x); }\n",
          "// The inverse, atanh.\nint arcatanh;\n", ("include", "src", "viewer/src"), r"src/formula/habits\.cpp"),
 ]

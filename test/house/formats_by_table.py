@@ -4,7 +4,7 @@
 usage: formats_by_table.py [--root DIR] [--self-test]
 
 The own files of NAME_format are src/result/NAME*. No other file of src/ may include their headers, use the row, or hold
-an ending of the format as a text: it would be one more place to change for another format.
+an ending of the format as a text, since each such place would have to change for another format.
 """
 
 import argparse
@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 TABLE = "src/result/formats.cpp"
-# A mark of a format that another file needs, and why.
+# A mark of a format that another file needs, with the reason.
 ALLOWED = {
     ("src/cli/equations/derive.cpp", '".json"'),  # of files that hold equations
     ("src/api/motion.cpp", '#include "result/json_run.h"'),  # Run::json() promises JSON
@@ -23,7 +23,7 @@ ALLOWED = {
     ("src/ensemble/store/sweep_store.cpp", '".parquet"'),
     ("src/ensemble/parts/fill.cpp", '#include "result/parquet/parquet_sweep.h"'),
     ("src/cli/motions/sweep_folder.cpp", '#include "result/parquet/parquet_sweep.h"'),
-    # Tables of cases, which are no results, may be Parquet files of other programs.
+    # Tables of cases are no results and may be Parquet files of other programs.
     ("src/result/parquet/table_text.cpp", '#include "result/parquet/parquet.h"'),
 }
 

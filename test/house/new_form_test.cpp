@@ -1,5 +1,4 @@
-// A formulation is added by one file and nothing else: this program is the house with one more file in its list of
-// forms.
+// A formulation is added by one file and nothing else: this program is built with one more file in its list of forms.
 #include <gtest/gtest.h>
 
 #include "observe/evaluate.h"

@@ -1,5 +1,5 @@
-// A format of results is added by one file and its name in the table: this program is the house with one format more,
-// and its commands write, read and name the format.
+// A format of results is added by one file and its name in the table: this program is built with one more format, and
+// its commands write, read and name the format.
 #include <filesystem>
 #include <fstream>
 #include <sstream>

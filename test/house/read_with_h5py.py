@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Runs the Python of doc/results.md on results of the program: what is documented is what h5py finds.
+"""Runs the Python of doc/results.md on results of the program: h5py finds the documented data.
 
 usage: read_with_h5py.py PROGRAM
 
-Exit status 77 (skipped) where h5py or mpmath is not installed, or the program has no HDF5.
+Exit status 77 (skipped) if h5py or mpmath is not installed, or the program has no HDF5.
 """
 
 import csv

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Records the disc: one picture, three moments, a film where there is ffmpeg; the pictures are what was asked for and show a motion.
+"""Records the disc: one picture, three moments, a film if ffmpeg is installed; the pictures are those requested and show a motion.
 
 usage: render_disc.py PROGRAM
 
-Exit status 77 (skipped) where Chromium is missing or the program has no viewer.
+Exit status 77 (skipped) if Chromium is missing or the program has no viewer.
 """
 
 import os
@@ -68,7 +68,7 @@ def main():
         frames = [pixels(out / "frames" / n) for n in names]
         assert all(s == (160, 90) for s, _ in frames)
         assert len({f for _, f in frames}) == 3, "pictures of different moments are the same"
-        # In a batch or alone, a moment looks the same.
+        # A moment looks the same in a batch and alone.
         assert frames[1][1] == light
 
         assert "outside the motion" in render("-o", "late.png", "--at", "3", code=2).stderr

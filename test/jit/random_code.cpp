@@ -30,7 +30,7 @@ llvm::Value* RandomCode::place(std::size_t at) {
   return b_.CreateConstInBoundsGEP1_64(b_.getDoubleTy(), function_->getArg(0), at);
 }
 
-// One of all numbers, so that many of them live for a long time.
+// Draws from all numbers so far, so that many of them live for a long time.
 RandomCode::Number& RandomCode::any(std::size_t lanes) {
   for (;;) {
     Number& n = numbers_[below(numbers_.size())];
@@ -80,7 +80,7 @@ void RandomCode::arithmetic(std::size_t lanes) {
   }
 }
 
-// Factors and terms with any signs; a negation that nobody else uses is part of the instruction.
+// Factors and terms have any signs; a negation with no other use becomes part of the instruction.
 void RandomCode::fused(std::size_t lanes) {
   std::array<Number, 3> of{any(lanes), any(lanes), below(6) == 0 ? constant(lanes) : any(lanes)};
   for (Number& n : of)
@@ -127,7 +127,7 @@ void RandomCode::function(std::size_t lanes) {
   }
 }
 
-// Elements of vectors and numbers alone.
+// Moves elements between vectors and single numbers.
 void RandomCode::move_lanes() {
   Number v = any(lanes_);
   const Number x = any(1);
@@ -143,7 +143,7 @@ void RandomCode::move_lanes() {
   }
 }
 
-// The orders of elements that transpose a matrix of four by four.
+// Shuffles two vectors in the orders that transpose a matrix of four by four.
 void RandomCode::shuffle() {
   const Number a = any(4), b = any(4);
   constexpr std::array<std::array<int, 4>, 5> kMasks{
@@ -197,7 +197,7 @@ void RandomCode::loop(int operations) {
     nodes.back()->addIncoming(start.ir, before);
     values.push_back(start.value);
   }
-  // Each node takes the value of another one, in a random order; every third one a sum with what lived before the loop.
+  // Each node takes the value of another one, in a random order; every third node adds a number from before the loop.
   std::vector<std::size_t> from(count);
   for (std::size_t k = 0; k < count; ++k) from[k] = k;
   std::shuffle(from.begin(), from.end(), random_);
@@ -212,7 +212,7 @@ void RandomCode::loop(int operations) {
   for (std::size_t k = 0; k < count; ++k) nodes[k]->addIncoming(added[k].first ? added[k].first : nodes[from[k]], body);
   b_.CreateCondBr(b_.CreateICmpSLT(next, b_.getInt64(turns)), body, after);
   b_.SetInsertPoint(after);
-  // The nodes still hold what they were in the last turn.
+  // After the loop the nodes hold the values with which its last turn began.
   for (std::size_t t = 1; t < turns; ++t) {
     std::vector<std::vector<double>> moved;
     for (std::size_t k = 0; k < count; ++k) {

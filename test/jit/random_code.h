@@ -1,4 +1,4 @@
-// Random straight-line code with a loop in LLVM IR, and what it computes according to C++.
+// Random straight-line code with a loop in LLVM IR, and its results as C++ computes them.
 #pragma once
 #include <array>
 #include <bit>
@@ -13,14 +13,15 @@
 
 namespace anholon::jit {
 
-// A function of an arena: it reads kInputs numbers and writes others behind them. What the arena holds afterwards is in
-// `expected`, computed operation by operation in C++.
+// A function of an arena: it reads kInputs numbers and writes others behind them. `expected` is the arena afterwards,
+// computed operation by operation in C++.
 class RandomCode {
  public:
   static constexpr std::size_t kInputs = 64, kArena = 4096;
   using Arena = std::array<double, kArena>;
 
-  // `lanes`: 1, 4 or 8 of the vectors; numbers alone are always among the operands. `operations`: of each block.
+  // `lanes`: 1, 4 or 8 elements of the vectors; single numbers are always among the operands. `operations`: their
+  // number in each block.
   RandomCode(llvm::Module& module, const char* name, std::uint32_t seed, unsigned lanes, int operations);
   const Arena& begin() const { return begin_; }
   const Arena& expected() const { return expected_; }
@@ -49,7 +50,7 @@ class RandomCode {
   void shuffle();
   void operation();
   void straight_line(int operations);
-  // Phi nodes that change places: the k-th takes the value of another one, or of a sum.
+  // Adds a loop with phi nodes that change places: each takes the value of another one, or a sum.
   void loop(int operations);
 
   std::mt19937 random_;

@@ -1,5 +1,5 @@
-// Code that is translated instruction by instruction computes what C++ does, bit by bit; code that the translator does not know
-// is refused by name.
+// Code that is translated instruction by instruction computes what C++ computes, bit by bit. Code that the translator
+// does not know is refused by name.
 #include <functional>
 #include <string>
 
@@ -16,7 +16,7 @@ namespace {
 
 bool machine_has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
 
-// The parts of a kernel that a test has no use for.
+// Adds empty functions for the parts of a kernel that a test does not use.
 void add_empty_parts(llvm::Module& module) {
   llvm::IRBuilder<> b(module.getContext());
   Code code;
@@ -38,7 +38,7 @@ bool same(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (std::isnan(a) && std::isnan(b));
 }
 
-// How many numbers of the arena differ after the translated code from what C++ says.
+// The count of numbers of the arena in which the translated code differs from C++.
 int differences(std::uint32_t seed, unsigned lanes, int operations) {
   llvm::LLVMContext context;
   llvm::Module module("random", context);
@@ -57,7 +57,7 @@ void expect_same_bits(unsigned lanes) {
     EXPECT_EQ(differences(seed, lanes, static_cast<int>(10 + seed % 50)), 0) << "seed " << seed;
 }
 
-// What the translator says to a function of one double that `body` makes.
+// The message by which the translator refuses a function of one double that `body` makes.
 std::string refusal(const std::function<void(llvm::IRBuilder<>&, llvm::Function&)>& body) {
   llvm::LLVMContext context;
   llvm::Module module("odd", context);

@@ -1,4 +1,4 @@
-// The equations as they are printed are the equations: for every shipped model, arranged - original is zero.
+// The printed equations are the derived ones: for every shipped model, arranged - original is zero.
 #include <gtest/gtest.h>
 
 #include "expr/normal.h"
@@ -49,7 +49,7 @@ TEST_P(Arranged, EquationsAreProvedEqualOrHaveTheSameValues) {
   EXPECT_GE(2 * proofs, equations.size());
 }
 
-// A sign that is lost in an arrangement is seen.
+// A sign that an arrangement loses is noticed.
 TEST_P(Arranged, AMutantIsRefuted) {
   const std::shared_ptr<const Model> model = test::shipped(GetParam());
   for (Expr e : routh(*model))

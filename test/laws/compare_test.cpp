@@ -1,5 +1,5 @@
-// Published equations: the gallery of papers, derived equations as they are printed, multiples and combinations of
-// them, and misprints of each kind, which must be named; dots that are lost at up to four places, too.
+// Published equations: the gallery of papers; derived equations as they are printed, with multiples and combinations of
+// them; and misprints of each kind, which must be named. Dots may be lost at up to four places.
 #include <cstdlib>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace anholon::test::compare_test {
 namespace {
 
-// A shipped model, ready to be compared with.
+// A shipped model with which equations are compared.
 struct Shipped {
   std::optional<Subject> subject;
 
@@ -46,7 +46,7 @@ struct Shipped {
   }
 };
 
-// What a misprint does to a text.
+// A misprint: its kind, and the text that it replaces by another.
 struct Misprint {
   const char* kind;
   const char *right, *wrong;
@@ -57,7 +57,7 @@ constexpr Misprint kMisprints[] = {
     {"coefficient", "2*", ""}, {"coefficient", "/2", ""},
 };
 
-// The first place where it can happen: not inside a name, a number or an exponent.
+// The first place where the misprint can happen: not inside a name, a number or an exponent.
 std::size_t place_of(const Misprint& m, const std::string& text) {
   for (std::size_t at = text.find(m.right); at != std::string::npos; at = text.find(m.right, at + 1)) {
     const std::size_t end = at + std::string(m.right).size();
@@ -78,7 +78,7 @@ TEST_P(Gallery, RestoredEquationsAreTrue) {
     EXPECT_EQ(s.judged(e).verdict, Verdict::proved) << e.label << ": " << s.judged(e).detail;
 }
 
-// What the reading of the scan has instead is false, and nothing else is.
+// An equation as read from the scan is refuted if it differs from the restored one, else proved.
 TEST_P(Gallery, WhatIsReadOtherwiseIsFalse) {
   const std::string name = GetParam();
   Shipped s("papers/" + name + "-symbolic");
@@ -108,7 +108,7 @@ TEST(GalleryMisprints, AreNamed) {
   EXPECT_EQ(right["4.3.r"], "m*ur -> m'*ur");
   EXPECT_EQ(right["4.3.phi"], "m*r*uf*cos(psi) -> m'*r*uf*cos(psi)");
   EXPECT_EQ(right["4.4.psi"], "m*r*up -> m'*r*up");
-  // Of the two differences of (4.3.psi) one alone.
+  // The equation has one of the two differences of (4.3.psi).
   const auto psi = one.read("e: m*D(r^2*psi', 1) + m*r^2*phi'^2*sin(psi)*cos(psi) = m'*r*up + 2*r*psi'^2*lambda - "
                             "2*m*w*r^2*phi'*sin(psi)*cos(psi) - m*r^2*w^2*sin(psi)*cos(psi)\n");
   const Comparison c = one.compared(psi[0]);
@@ -153,7 +153,7 @@ TEST_P(Derived, MisprintsAreNamed) {
       wrong.replace(at, std::string(m.right).size(), m.wrong);
       const PublishedEquation e = s.read("e: " + wrong)[0];
       const Comparison c = s.compared(e);
-      if (c.verdict == Verdict::proved) continue;  // sin^2 for cos^2 where both are possible, …
+      if (c.verdict == Verdict::proved) continue;  // another true equation: sin^2 for cos^2, perhaps
       EXPECT_EQ(c.verdict, Verdict::refuted) << wrong << "\n" << c.detail;
       ASSERT_FALSE(c.changes.empty()) << m.kind << "\n" << wrong << "\n" << original;
       const std::string printed = e.text();
@@ -169,7 +169,7 @@ TEST_P(Derived, MisprintsAreNamed) {
       exactly += named;
     }
   }
-  // Others name a change with the same meaning: an equation has two sides.
+  // The others are named by a change with the same meaning: an equation has two sides.
   EXPECT_GE(10 * exactly, 7 * tried);
 }
 
@@ -193,7 +193,7 @@ std::vector<Symbol> symbols_of(const std::string& text) {
   return list;
 }
 
-// Numbers that look random and are the same everywhere.
+// Pseudo-random numbers that are the same everywhere.
 struct Dice {
   std::uint64_t state;
   std::size_t roll(std::size_t sides) {
@@ -202,7 +202,7 @@ struct Dice {
   }
 };
 
-// Of `count` symbols of the equation some dots are lost; nothing where there are fewer symbols with dots.
+// Erases some dots of `count` symbols of the equation. Returns an empty text if fewer symbols have dots.
 std::string without_dots(const std::string& text, std::size_t count, Dice& dice) {
   std::vector<Symbol> dotted;
   for (const Symbol& s : symbols_of(text))
@@ -254,7 +254,7 @@ TEST_P(Derived, LostDotsWrongSignsAndOtherIndicesAreNamed) {
       if (wrong.empty()) return;
       const PublishedEquation e = s.read("e: " + wrong)[0];
       const Comparison c = s.compared(e);
-      if (c.verdict == Verdict::proved) return;  // a change that means nothing, or another true equation
+      if (c.verdict == Verdict::proved) return;  // the change has no effect, or the other equation is true as well
       ASSERT_EQ(c.verdict, Verdict::refuted) << wrong << "\n" << c.detail;
       EXPECT_EQ(c.what.find("times 0"), std::string::npos) << c.what;
       ++tried;

@@ -1,5 +1,5 @@
-// The ten examples of the DAE view (theory: dae-view), each with its numbers: structure, state dimension, what is free
-// at the start, and where a motion ends.
+// The ten examples of the DAE view (theory: dae-view), each with its numbers: structure, dimension of the state, free
+// initial values, and the end of a motion.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -98,7 +98,8 @@ TEST(DaeExamples, Six_TheAppellHamelMachineStopsAtItsApex) {
   EXPECT_EQ(scenario(test::shipped("zoo/appell-hamel-regularised")).structure.state_dimension, 6);
 }
 
-// A combination of the two constraints of the disc: q'' and N are those of two constraints, lambda is the least one.
+// A third constraint combines the two of the disc: q'' and N stay those of two constraints, and lambda is the one of
+// least norm.
 TEST(DaeExamples, Seven_ARedundantConstraintChangesNothing) {
   const std::string disc =
       "coordinates = [\"x\", \"y\", \"th\", \"ph\"]\n[[body]]\nname = \"disc\"\nmass = 2\ninertia = [\"1/5\", \"2/5\", "
@@ -148,7 +149,8 @@ TEST(DaeExamples, Nine_DerivativesThatCancelDoNotCount) {
     EXPECT_EQ(scenario(test::shipped("zoo/constant-acceleration"), form).structure.state_dimension, 6) << form;
 }
 
-// The same knife edge, differentiated twice: two numbers more, which are constants of its motion.
+// The same knife edge with its constraint differentiated twice: its state has two numbers more, which are constants of
+// its motion.
 TEST(DaeExamples, Ten_ALiftedConstraintIsAnotherSystem) {
   const std::string text = test::shipped_text("zoo/chaplygin-sleigh");
   const auto model = test::model_of(text);
@@ -158,7 +160,7 @@ TEST(DaeExamples, Ten_ALiftedConstraintIsAnotherSystem) {
   EXPECT_EQ(scenario(test::model_of(test::replaced(text, equation, lifted))).structure.state_dimension, 2 * 3 + 1);
 }
 
-// phi = x'' x''' + y''': (m - lambda) x'' = F, m y'' = lambda, and J is singular where m - lambda + m x''^2 = 0.
+// phi = x'' x''' + y''': (m - lambda) x'' = F, m y'' = lambda, and J is singular if m - lambda + m x''^2 = 0.
 class ItsOwnAcceleration : public testing::Test {
  protected:
   static std::string text(const std::string& force, const std::string& lambda) {
@@ -182,7 +184,7 @@ TEST_F(ItsOwnAcceleration, StopsWhereItBecomesSingular) {
     const Motion m = run(test::model_of(text("t", "1.5")), Rational(3), form);
     EXPECT_EQ(m.report.outcome.kind, OutcomeKind::singular) << form << ": " << m.report.outcome.message;
     ASSERT_FALSE(m.rows.rows().empty()) << form;
-    // Near the end lambda - m = m x''^2.
+    // Near the end, lambda - m = m x''^2.
     const double a = m.last("x''");
     EXPECT_NEAR((m.last("lambda.c") - 1) / (a * a), 1, 1e-2) << form;
   }
@@ -192,7 +194,7 @@ TEST_F(ItsOwnAcceleration, GoesOnWhereItIsRegular) {
   EXPECT_TRUE(run(test::model_of(text("t", "0.5")), Rational(3)).report.outcome.ok());
 }
 
-// A parallelogram of bars passes the flat configuration, where its constraints are dependent.
+// A parallelogram of bars passes its flat configuration, in which its constraints are dependent.
 TEST(BetweenTwoSteps, AFoldedLinkageIsNoticed) {
   const std::string text = "coordinates = [\"a\", \"b\", \"c\"]\n[point]\nP = \"cos(a)*ex + sin(a)*ey + 2*cos(b)*ex + "
                            "2*sin(b)*ey\"\nQ = \"2*ex + cos(c)*ex + sin(c)*ey\"\n"
@@ -203,13 +205,13 @@ TEST(BetweenTwoSteps, AFoldedLinkageIsNoticed) {
                            "[initial]\na = 1\n\"a'\" = -2\nguess = {b = 0, c = 1}\n";
   const Motion routh = run(test::model_of(text), Rational(5)), maggi = run(test::model_of(text), Rational(5), "maggi");
   EXPECT_EQ(routh.report.outcome.kind, OutcomeKind::singular) << routh.report.outcome.message;
-  // Maggi's equations lose their pivots a little before.
+  // Maggi's equations lose their pivots shortly before.
   EXPECT_FALSE(maggi.report.outcome.ok());
   for (const Motion* m : {&routh, &maggi}) {
     EXPECT_NEAR(m->report.t, 0.460032711, 2e-3);
     EXPECT_LT(m->report.t, 0.4600328);
   }
-  // Other lengths do not fold flat together.
+  // Bars of other lengths do not become flat together.
   const std::string other = test::replaced(text, "2*ex + cos(c)", "1.5*ex + cos(c)");
   const Motion m = run(test::model_of(other), Rational(1, 2));
   EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;

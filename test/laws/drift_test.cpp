@@ -12,8 +12,8 @@
 namespace anholon::test::drift_test {
 namespace {
 
-// What one step loses, relative to the state; what is left after projection, relative to the terms of the constraint:
-// round-off of the wider numbers the state is kept in.
+// Bounds of the error of one step, relative to the state, and of the error after projection, relative to the terms of
+// the constraint: the latter is round-off of the wider numbers that hold the state.
 constexpr double kConstraintBound = 1e-13, kProjectedBound = 1e-18;
 constexpr double kEnergyBound = 1e-12;
 
@@ -38,7 +38,7 @@ void run(const std::string& model, double seconds_per_step, Motion& m) {
   ASSERT_GE(m.report.steps, wanted_steps());
 }
 
-// Its gait drives it faster and faster.
+// The snakeboard's gait drives it faster and faster.
 TEST(Drift, TheDrivenSnakeboardStaysOnItsConstraints) {
   Motion m;
   ASSERT_NO_FATAL_FAILURE(run("zoo/snakeboard", all_of_them() ? 0.03 : 0.125, m));
@@ -46,7 +46,7 @@ TEST(Drift, TheDrivenSnakeboardStaysOnItsConstraints) {
   EXPECT_LT(m.report.constraints_kept, kProjectedBound);
 }
 
-// Its motor drives it faster and faster: n steps take a time that grows with the root of n.
+// The four-bar's motor drives it faster and faster: n steps take a time that grows with the root of n.
 TEST(Drift, TheFourBarStaysClosed) {
   Motion m;
   ASSERT_NO_FATAL_FAILURE(run("zoo/fourbar", all_of_them() ? 4e-4 : 4.2e-3, m));
@@ -60,7 +60,7 @@ TEST(Drift, TheRollingCoinStaysOnItsConstraintsAndKeepsItsEnergy) {
   EXPECT_LT(m.report.constraints, kConstraintBound);
   EXPECT_LT(m.report.constraints_kept, kProjectedBound);
 
-  // T + m g R sin(th) at each row, from the columns alone.
+  // Energy T + m g R sin(th) of a row, from its columns alone.
   const Model& model = *m.scenario.model;
   const Tape tape = compile(std::vector<Expr>{put_masses(model, m.scenario.mechanics->T)});
   Machine<long double> machine(tape, 0, parameter_values<long double>(model));
@@ -70,8 +70,8 @@ TEST(Drift, TheRollingCoinStaysOnItsConstraintsAndKeepsItsEnergy) {
     for (const Input& in : tape.inputs) {
       const Node& node = model.graph->node(in.symbol);
       machine.series(in.slot)[0] = column(1 + node.order * n + node.index);
-      // The heading has turned so often that its 17 digits tell where x' and y' point to 1e-11 only: along it, as the
-      // coin rolls (R = 1/2).
+      // The heading has turned so often that its 17 digits give the direction of (x', y') to 1e-11 only. The velocity
+      // is therefore taken along the heading, as the coin rolls (R = 1/2).
       if (const long double heading = column(1 + 2), rate = -column(1 + n + 4) / 2; node.order == 1 && node.index < 2)
         machine.series(in.slot)[0] = rate * (node.index == 0 ? std::cos(heading) : std::sin(heading));
     }

@@ -1,4 +1,4 @@
-// The examples of doc/equations.md: those whose label ends in `.wrong` are false, all others are true.
+// The examples of doc/equations.md: examples whose label ends in `.wrong` are false, all others are true.
 #include <gtest/gtest.h>
 
 #include "published/subject.h"

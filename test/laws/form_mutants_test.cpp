@@ -1,6 +1,6 @@
-// Every form is proved to be Routh's equations, and with one sign of it changed it is refuted, by a witness that is
-// judged by other arithmetic. Changed are summands of the two sides of an equation, and of sums inside them. Under
-// ANHOLON_LONG=1 all of them, otherwise one each of every side of every equation.
+// Every form is proved to be equivalent to Routh's equations. A form with one changed sign is refuted by a witness,
+// which other arithmetic checks. The sign is that of a summand of a side of an equation, or of a sum inside it: of all
+// summands under ANHOLON_LONG=1, otherwise of one of each kind in every side of every equation.
 #include <cstdlib>
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ bool at_length() { return std::getenv("ANHOLON_LONG") != nullptr; }
 struct System {
   std::shared_ptr<const Model> model;
   Mechanics m;
-  std::vector<Eliminations> eliminations;  // constraints solved, and not
+  std::vector<Eliminations> eliminations;  // constraints solved, and not solved
   explicit System(const std::string& name) : model(test::shipped(name)), m(mechanics(*model)) {
     for (const bool solve : {true, false})
       eliminations.push_back({elimination_for(m, Unknowns::coordinates, {}, {}, solve),
@@ -38,11 +38,11 @@ const System& system_of(const std::string& name) {
   return *s;
 }
 
-// One sign in one equation of a form.
+// One changed sign in one equation of a form.
 struct Mutant {
   bool left = true, inside = false;
   std::size_t equation = 0;
-  NodeId sum = 0;  // the sum whose summand it is
+  NodeId sum = 0;  // the sum that contains the summand
   std::size_t summand = 0;
 
   Expr changed(Expr e) const {
@@ -60,7 +60,8 @@ struct Mutant {
   }
 };
 
-// Of each side of each equation at most so many of its summands, and as many of sums inside.
+// For each side of each equation, the mutants of at most `most` of its summands and of as many summands of sums inside
+// it.
 std::vector<Mutant> mutants_of(const Equations& q, std::size_t most) {
   std::vector<Mutant> out;
   const auto some = [&](std::vector<Mutant> list) {
@@ -84,7 +85,7 @@ std::vector<Mutant> mutants_of(const Equations& q, std::size_t most) {
   return out;
 }
 
-// What the change adds to the equations that are compared with Routh's.
+// The terms that the change adds to the equations that are compared with Routh's.
 Column expected(const System& s, const Formulation& form, const Elimination& e, const Equations& right,
                 const Equations& wrong) {
   const Column delta = (wrong.left - wrong.right) - (right.left - right.right);
@@ -106,7 +107,7 @@ bool vanishes(const System& s, const Elimination& e, const Column& column) {
   return true;
 }
 
-// The point of a witness: its rational values, and the root in its box found again by Newton's method.
+// Sets the point of a witness: its rational values, and the root in its box, which Newton's method finds anew.
 ::testing::AssertionResult point_of(const WitnessPoint& w, test::Point& at) {
   Column unknowns;
   for (const auto& [symbol, value] : w.values) at.set(symbol, Multi(value));
@@ -123,7 +124,7 @@ bool vanishes(const System& s, const Elimination& e, const Column& column) {
   return ::testing::AssertionSuccess();
 }
 
-// Not zero at the witness, and there just what the change makes it.
+// At the witness the difference is not zero and equals the terms that the change adds.
 void expect_witness(const Difference& d, Expr change, const std::string& what) {
   ASSERT_TRUE(d.witness) << what;
   test::Point at(1);
@@ -144,13 +145,13 @@ std::vector<Case> cases() {
   const char* const with_ideal_reactions[] = {"papers/luo-zhao-example-2", "zoo/rheonomic-order-1",
                                               "zoo/second-order-linear",   "zoo/rheonomic-order-2",
                                               "zoo/third-order-linear",    "zoo/rheonomic-order-3"};
-  // The other mechanics agrees where the constraints are holonomic.
+  // Variational mechanics agrees if the constraints are holonomic.
   const char* const holonomic[] = {"zoo/double-pendulum-cartesian", "zoo/fourbar"};
   for (const Formulation* form : formulations()) {
     const bool variational = form->unknowns == Unknowns::variational;
     for (const std::string name :
          variational ? std::span<const char* const>(holonomic) : std::span<const char* const>(with_ideal_reactions)) {
-      // The inverses of this one, written out, take seconds.
+      // The inverses of this combination, written out, take seconds.
       if (!at_length() && form->name == std::string("udwadia-kalaba") && name == "zoo/rheonomic-order-1") continue;
       if (form->obstacle(system_of(name).m).empty()) list.push_back({name, form->name});
     }
@@ -211,7 +212,7 @@ TEST_P(Certificates, VerifyAndTamperedOnesDoNot) {
   for (const char* name : {"routh", "nielsen", "maggi", "chaplygin", "mac-millan", "micevic-rusov-reduced", "kane"})
     if (find_formulation(name)->obstacle(s.m).empty()) forms.push_back(find_formulation(name));
   Proof proof = prove(s.m, forms, s.eliminations);
-  // A form with a mistake, so that there is something that differs.
+  // The form contains a mistake, so that one claim is a difference.
   const Formulation& form = *find_formulation("maggi");
   const std::vector<Eliminations> used = {s.eliminations[proof.forms[2].elimination]};
   const Equations right = form.equations(s.m, used[0].of(form));
@@ -236,7 +237,7 @@ TEST_P(Certificates, VerifyAndTamperedOnesDoNot) {
       tampered.claims = {c.claims[k]};
       tampered.claims[0].right.pop_back();
       EXPECT_FALSE(verify(tampered, quick).all_confirmed()) << c.claims[k].a << ", " << c.claims[k].component;
-      // Another left side.
+      // The left side is another one.
       tampered.claims = {c.claims[k]};
       tampered.claims[0].left = tampered.claims[0].right[0].node;
       tampered.claims[0].right.push_back({tampered.claims[0].left, tampered.claims[0].left});
@@ -244,13 +245,13 @@ TEST_P(Certificates, VerifyAndTamperedOnesDoNot) {
     }
     if (c.claims[k].kind != Certificate::ClaimKind::differ) continue;
     ++differ;
-    // The contrary is claimed.
+    // The opposite is claimed.
     Certificate tampered = c;
     tampered.claims = {c.claims[k]};
     tampered.claims[0].kind = Certificate::ClaimKind::agree;
     tampered.claims[0].witness.reset();
     EXPECT_FALSE(verify(tampered, quick).all_confirmed()) << c.claims[k].component;
-    // An equality is claimed to differ at the same witness.
+    // An equality is claimed to be a difference at the same witness.
     for (const Certificate::Claim& equal : c.claims)
       if (equal.kind == Certificate::ClaimKind::agree) {
         tampered.claims = {equal};

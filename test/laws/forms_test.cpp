@@ -1,5 +1,5 @@
-// Laws that hold at every point of the jet space, for every shipped model and every formulation: no equation of motion
-// is solved here. Values by the reference evaluator, 40 digits.
+// Laws that hold at every point of the jet space, for every shipped model and every formulation; no equation of motion
+// is solved here. The reference evaluator computes the values with 40 digits.
 #include <gtest/gtest.h>
 
 #include "formulation/formulation.h"
@@ -11,7 +11,7 @@ namespace {
 
 // 40 digits, terms up to 1e3 and some hundred operations.
 constexpr double kExact = 1e-30;
-// A mutant must miss by much more than that.
+// A mutant must miss by much more than kExact.
 constexpr double kRefuted = 1e-6;
 constexpr int kPoints = 3;
 
@@ -63,7 +63,7 @@ TEST_P(Forms, AreNewtonsLawWithIdealReactions) {
   int applied = 0;
   for (const Formulation* form : formulations()) {
     if (!form->obstacle(s.m).empty()) continue;
-    if (form->unknowns != Unknowns::multipliers) continue;  // the others have laws of their own
+    if (form->unknowns != Unknowns::multipliers) continue;  // forms without multipliers have laws of their own
     const Equations e = form->equations(s.m, Elimination());
     ++applied;
     EXPECT_LE(form_error(s, e), kExact) << form->name;
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Model, Forms, testing::ValuesIn(test::shipped_models())
 
 // ---- mutants: the same checks must refute the mistakes under "What goes wrong easily" in doc/theory/
 
-// How many shipped models refute Routh's equations with a mistake in them.
+// The number of shipped models that refute Routh's equations with the given mistake.
 int refuted_by(const std::function<Equations(const System&)>& mutant) {
   int models = 0;
   for (const auto& s : all_systems()) models += form_error(*s, mutant(*s)) > kRefuted;

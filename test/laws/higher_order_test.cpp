@@ -43,7 +43,7 @@ std::string with_order_four() {
          "lambdadot = {snap = -0.2}\n";
 }
 
-// A force holds the rate of a state; the equations of motion are differentiated for the constraint.
+// A force holds the rate of a state; the constraint requires the equations of motion to be differentiated.
 std::string with_rate_in_force() {
   return "coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = [\"x\", \"y\", \"0\"]}]\n"
          "state.fuel = {rate = \"-0.05*fuel\", initial = 1}\n[[force]]\non = \"p\"\nvector = \"fuel'*ey\"\n"
@@ -103,7 +103,7 @@ TEST(RateInForce, HasItsMultiplierInClosedForm) {
   EXPECT_NEAR(std::stod(m.rows.rows().back().at(at)), 0.025 * (std::exp(-0.05) - 1), 1e-16);
 }
 
-// A point is moved by an input that holds a state, beside a blade: the equations hold the second derivative of the state.
+// An input that holds a state moves a point, beside a blade: the equations hold the second derivative of the state.
 TEST(StateInPlace, IsTheFunctionThatItBecomes) {
   const std::string rest =
       "coordinates = [\"x\", \"y\", \"q\"]\nparticle = [{name = \"b\", mass = \"1\", position = \"x*ex + y*ey + "
@@ -152,7 +152,7 @@ TEST(BranchThatEnds, AlsoWhereTheReactionTurns) {
   EXPECT_NEAR(m.report.t, 1.730232088, 1e-8);
 }
 
-// The free multiplier: the figures of the specification.
+// Without the control of the multiplier the motion is another one.
 TEST(FreeMultiplier, GivesAnotherMotion) {
   std::string text = test::shipped_text("zoo/third-order-linear");
   text.erase(text.find("lambda = {control"), std::string("lambda = {control = \"2/5\"}").size());

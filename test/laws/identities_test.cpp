@@ -1,6 +1,7 @@
-// The identities on which the forms rest, each at random points in 40 digits and, where that is cheap, by exact
-// algebra. Points are anywhere among the jets for identities of T, on the manifold of the constraints (found by
-// numbers) for those that eliminate. The operators of an Elimination are judged by differences along the manifold.
+// The identities on which the forms rest, each at random points in 40 digits and, if that is cheap, by exact algebra.
+// Identities of T are tested at any jets, those with eliminated quantities at points on the manifold of the
+// constraints, which are found numerically. The operators of an Elimination are compared with differences along the
+// manifold.
 #include <map>
 
 #include <gtest/gtest.h>
@@ -40,7 +41,8 @@ Column derivative(Column c, int times) {
 // ---- identities of T and of places, in all jets
 // -----------------------------------------------------------------------------
 
-// d F^(k)/dq^(j) = C(k, j) (dF/dq)^(k-j) + C(k, j-1) (dF/dq')^(k-j+1)  (theory: derivatives); `other` replaces C(k, j-1).
+// d F^(k)/dq^(j) = C(k, j) (dF/dq)^(k-j) + C(k, j-1) (dF/dq')^(k-j+1)  (theory: derivatives);
+// `other` replaces C(k, j-1).
 Terms commutation(const System& s, Expr F, unsigned k, unsigned j, std::optional<Rational> other = {}) {
   const Rational first = binomial(k, static_cast<int>(j)),
                  second = other.value_or(binomial(k, static_cast<int>(j) - 1));
@@ -55,7 +57,7 @@ Terms nielsen(const System& s, unsigned m, const Rational& factor) {
           s.by(0, s.m.T)};
 }
 
-// dT^(m)/dq^(m) - dT^(m-1)/dq^(m-1) - dT/dq = D/Dt dT/dq' - dT/dq  [N 2.10]; `factor` before dT/dq on the left.
+// dT^(m)/dq^(m) - dT^(m-1)/dq^(m-1) - dT/dq = D/Dt dT/dq' - dT/dq  [N 2.10]; `factor` multiplies dT/dq on the left.
 Terms micevic_rusov(const System& s, unsigned m, const Rational& factor) {
   return {s.by(m, total_derivative(s.m.T, m)), -s.by(m - 1, total_derivative(s.m.T, m - 1)), -(factor * s.by(0, s.m.T)),
           -total_derivative(s.by(1, s.m.T)), s.by(0, s.m.T)};
@@ -67,7 +69,7 @@ Terms mangeron(const System& s, unsigned m, const Rational& factor) {
           -total_derivative(s.by(1, s.m.T)), s.by(0, s.m.T)};
 }
 
-// dT/dq = 1/m dT^(m-1)/dq^(m-1) - (m-1)/m E, E in place of Q  [N 5.2]; `factor` stands for m - 1.
+// dT/dq = 1/m dT^(m-1)/dq^(m-1) - (m-1)/m E, with E in place of Q  [N 5.2]; `factor` stands for m - 1.
 Terms energy_of_lower_order(const System& s, unsigned m, const Rational& factor) {
   return {s.by(0, s.m.T), Rational(-1, m) * s.by(m - 1, total_derivative(s.m.T, m - 1)),
           factor / Rational(m) * lagrange_operator(s.m)};
@@ -88,8 +90,8 @@ std::pair<Terms, Terms> places(const System& s, unsigned k, const Rational& fact
   return all;
 }
 
-// -2 sum m (omega x v) . dr/dq_a = -2 omega . {sum_k (sum m dr/dq_k x dr/dq_a) q_k' + sum m dr/dt x dr/dq_a}  [L 2.1], the
-// generalized Coriolis force; `with_time` keeps the last sum, `sign` turns the cross products.
+// -2 sum m (omega x v) . dr/dq_a = -2 omega . {sum_k (sum m dr/dq_k x dr/dq_a) q_k' + sum m dr/dt x dr/dq_a}  [L 2.1],
+// the generalized Coriolis force; `with_time` keeps the last sum, -1 for `sign` reverses the cross products.
 Terms coriolis(const System& s, bool with_time = true, int sign = 1) {
   const Vector& omega = s.model->observer.spin;
   Column bilinear(s.m.q.size(), s.g().zero());
@@ -127,7 +129,7 @@ TEST_P(Jets, CommutationRule) {
   const System& s = *generic(1, Shape::linear);
   for (unsigned j = 0; j <= m + 1; ++j) {
     EXPECT_TRUE(proved(commutation(s, s.m.T, m, j))) << "k = " << m << ", j = " << j;
-    if (j == m + 1 || j == 0) continue;  // only one of the two kinds is left
+    if (j == m + 1 || j == 0) continue;  // one of the two terms vanishes
     EXPECT_GT(miss(s, commutation(s, s.m.T, m, j, binomial(m + 1, static_cast<int>(j)))), kRefuted)
         << "k = " << m << ", j = " << j;
   }
@@ -219,7 +221,7 @@ std::vector<Case> cases(bool quasi) {
   std::vector<Case> list;
   for (unsigned m = 1; m <= 3; ++m) {
     const Speeds speeds = quasi ? Speeds::linear : Speeds::none;
-    // With an x^(m)^2 in the constraints the quasi-velocities cannot be solved for q^(m).
+    // If the constraints hold x^(m)^2, the quasi-velocities cannot be solved for q^(m).
     list.push_back({m, quasi ? Shape::affine : Shape::linear, speeds, true, false});
     list.push_back({m, Shape::linear, speeds, false, false});
     list.push_back({m, Shape::nonlinear, quasi ? Speeds::nonlinear : speeds, false, false});
@@ -245,7 +247,7 @@ class Manifold : public testing::TestWithParam<Case> {
     before = total_derivative(s.m.T, e.m - 1);
     T_m = total_derivative(s.m.T, e.m);
   }
-  // df_b/dq_c^(m-1), both dependent.
+  // df_b/dq_c^(m-1), b and c dependent.
   Rows f_by_dependent() const {
     Rows out;
     for (std::size_t b : e.dependent) out.push_back(e.D(e.g_by(e.m - 1)[b]));
@@ -287,7 +289,7 @@ TEST_P(Reduced, RateOfTheReducedEnergy) {  // [L 3.14]
   if (GetParam().solve) {
     EXPECT_TRUE(proved(right));  // else q_D^(m+1) stands for its value, and the terms cancel on the manifold only
   }
-  if (GetParam().shipped) return;  // f there does not hold q_b^(m-1), of which the tilde in the last sum speaks
+  if (GetParam().shipped) return;  // its f does not hold q_b^(m-1), to which the tilde in the last sum refers
   const Terms printed = {right[0], right[1], right[2], -(r * e.f_by_u())};
   refute(s, e, printed, "no tilde in the last sum");
   EXPECT_FALSE(proved(printed));
@@ -312,11 +314,12 @@ TEST_P(Reduced, RateOfTheSolvedConstraints) {
 
 INSTANTIATE_TEST_SUITE_P(Case, Reduced, testing::ValuesIn(cases(false)), case_name);
 
-// Appell's equations in the reduced energy of accelerations, and their print, which has S~ itself for every m  [L 3.20, 3.21]
+// Appell's equations in the reduced energy of accelerations; as printed they have S~ itself for every m
+// [L 3.20, 3.21].
 TEST_P(Reduced, EnergyOfAccelerations) {
   const Column E = lagrange_operator(s.m), contracted = e.contract(E);
   expect(s, e, {find_formulation("appell-reduced")->equations(s.m, e).left, -contracted}, "[L 3.21]");
-  // S with q_D^(m) = f alone: q'' holds no f for m = 1, S no q^(m) for m = 3.
+  // S with q_D^(m) = f alone: for m = 1, q'' holds no f; for m = 3, S holds no q^(m).
   const Column literal = e.m == 1 ? e.on(e.I(gradient(s.m.S, s.m.qdd))) : e.by_u(s.m.S);
   if (e.m == 2)
     expect(s, e, {literal, -contracted}, "as printed, m = 2");
@@ -338,7 +341,7 @@ TEST_P(Quasi, StarredEnergyByPiBelow) {  // [N 4.9]
   const Column p = e.on(s.by(e.m, before));
   const Terms right = {e.contract(e.by(e.m - 1, before)), -e.contract(s.by(e.m - 1, before)), -(p * g_by_pi())};
   expect(s, e, right, "[N 4.9]");
-  EXPECT_TRUE(!GetParam().shipped || proved(right));  // the others hold the inverse of a 4 x 4 matrix
+  EXPECT_TRUE(!GetParam().shipped || proved(right));  // the other systems hold the inverse of a 4 x 4 matrix
   refute(s, e, {right[0], right[1], -right[2]}, "the sign of the sum");
   refute(s, e, {right[0], right[1]}, "the sum forgotten");
 }
@@ -368,8 +371,8 @@ INSTANTIATE_TEST_SUITE_P(Case, Quasi, testing::ValuesIn(cases(true)), case_name)
 // ---- what the operators mean: differences along the manifold
 // ----------------------------------------------------------------
 
-// The point where the free quantities and lower derivatives are those of `at` but for `changed`, and q^(m), q^(m+1)
-// follow.
+// Points of the manifold: free quantities and their rates have given values, lower derivatives are those of a point,
+// and q^(m) and q^(m+1) follow.
 struct Along {
   const System& s;
   const Elimination& e;
@@ -383,7 +386,7 @@ struct Along {
     w.insert(w.end(), e.phi.begin(), e.phi.end());
     w_rate = total_derivative(w);
   }
-  // w[i] and w_rate[i] get these values by change of q^(m) and q^(m+1).
+  // Returns `at` with the q^(m) and q^(m+1) at which w and w_rate have the given values.
   test::Point solved(test::Point at, const std::vector<Multi>& value, const std::vector<Multi>& rate) const {
     const auto less = [&](const Column& es, const std::vector<Multi>& v) {
       Column out;
@@ -400,7 +403,7 @@ struct Along {
   }
 };
 
-// by_u and by_u_rate (or by(k), where k is given) against central differences of X itself between points of the
+// The error of by_u and by_u_rate, or of by(k) if k is given, against central differences of X between points of the
 // manifold.
 double operator_error(const System& s, const Elimination& e, Expr X, std::optional<unsigned> k = {}) {
   const PrecisionScope precision(60);
@@ -440,13 +443,13 @@ double operator_error(const System& s, const Elimination& e, Expr X, std::option
   return worst;
 }
 
-constexpr double kDifferences = 1e-24;  // step 1e-15, its square is the error
+constexpr double kDifferences = 1e-24;  // the error of a step of 1e-15 is its square
 
 TEST_P(Reduced, OperatorsAreDerivativesAlongTheManifold) {
   EXPECT_LE(operator_error(s, e, before), kDifferences);
   EXPECT_LE(operator_error(s, e, before, e.m - 1), kDifferences);
   EXPECT_LE(miss(s, e, {e.rate(Column{before}), -Column{T_m}}), kExact);
-  // T^(m) holds q^(m+1) too: by q^(m) and by q^(m+1).
+  // T^(m) holds q^(m+1) too, so the operators differentiate by both q^(m) and q^(m+1).
   EXPECT_LE(operator_error(s, e, T_m), kDifferences);
 }
 

@@ -1,6 +1,6 @@
-// An impact is the same for all observers: bodies strike a surface that moves as they strike one at rest with the velocities
-// relative to it. So is the refusal of an impact that would raise the energy, which is judged by relative velocities. The mutant
-// is the energy in the frame of the observer: a belt gives some of it in impacts that are valid.
+// An impact is the same for all observers: bodies strike a moving surface as they strike a surface at rest, with the
+// velocities relative to it. The same impacts are refused because they would raise the energy, which relative
+// velocities decide. The mutant is the energy in the frame of the observer: a belt raises it in valid impacts.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using test::contact_motion;
 
-// A rod of mass 1 and half length 1 that strikes at once, with its tip, a surface with the velocity (V, U).
+// A rod of mass 1 and half length 1 whose tip strikes, at once, a surface with the velocity (V, U).
 std::string rod(const std::string& law) {
   return R"toml(coordinates = ["x", "z", "phi"]
 parameters = {V = 0, U = 0, mu = 0, e = 0, angle = 0, slip = 0}
@@ -74,7 +74,7 @@ TEST(ImpactObserver, SurfacesThatMoveStrikeAsThoseAtRest) {
               if (rest.refused) continue;
               EXPECT_NEAR(moved.gap_rate, rest.gap_rate, 1e-13);
               EXPECT_NEAR(moved.slip, rest.slip, 1e-13);
-              // Without spin the body moves as its tip does.
+              // Without spin the body moves with the velocity of its tip.
               const double v = std::atof(slip) + std::atof(V), w = std::atof(U) - 1;
               given += moved.energy > (v * v + w * w) / 2 * (1 + 1e-12);
             }
@@ -94,7 +94,7 @@ initial = {z = 1}
                                 Rational(1, 2));
   ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
   const double t = std::sqrt(2 / 9.81);
-  EXPECT_NEAR(m.last("x'"), 2 * 9.81 * 0.5, 1e-13);  // as if it had been pressed by its weight from the start
+  EXPECT_NEAR(m.last("x'"), 2 * 9.81 * 0.5, 1e-13);  // as if its weight had pressed it on the belt from the start
   EXPECT_NEAR(times(m, "belt.hits").at(0), t, 1e-15);
 }
 

@@ -1,5 +1,5 @@
-// Frobenius's theorem: the derived flag sees through every mixing of the constraints, what it calls an integral is
-// constant along every admissible motion, and a set that is integrable but for one coefficient is not called so.
+// Frobenius's theorem: the derived flag does not depend on how the constraints are mixed, an integral that it finds is
+// constant along every admissible motion, and a set is not called integrable if one coefficient is changed.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -52,8 +52,8 @@ std::vector<std::string> integrals(const Found& f) {
   return out;
 }
 
-// df/dt along a motion that obeys all constraints vanishes: (df/dz) lies in the rows of all of them, by numbers that
-// share nothing with the search.
+// df/dt vanishes along a motion that obeys all constraints: (df/dz) lies in the span of their rows. The numbers here
+// are computed without the code of the search.
 void expect_constant(const Found& f) {
   const PrecisionScope precision(50);
   Graph& g = f.m.graph();
@@ -91,9 +91,9 @@ TEST(Integrability, OfOneForm) {
   EXPECT_EQ(integrals(found({"x' = r*y'"})), std::vector<std::string>{"x - r*y"});
   EXPECT_EQ(integrals(found({"y*x' - x*y' = 0"})).size(), 1U);
   EXPECT_EQ(found({"x' = z*y'"}).i.flag, (Ints{1, 0}));
-  // Velocities that cancel.
+  // Velocities cancel.
   EXPECT_EQ(integrals(found({"(x'^2 - y'^2)/(x' - y') = 0"})), std::vector<std::string>{"x + y"});
-  // Affine and rheonomic: t is a coordinate.
+  // Affine and rheonomic constraints: t counts as a coordinate.
   EXPECT_EQ(found({"y' = x"}).i.flag, (Ints{1, 0}));
   EXPECT_EQ(integrals(found({"y' = 3*t^2"})).size(), 1U);
   EXPECT_EQ(found({"x'*sin(t) + x*cos(t) = 0"}).i.flag, (Ints{1}));
@@ -108,14 +108,14 @@ TEST(Integrability, TwoTogetherAndNeitherAlone) {
   EXPECT_EQ(f.i.flag, (Ints{2}));
   EXPECT_TRUE(f.i.proved);
   EXPECT_EQ(f.i.combinations.size(), 2U);
-  // A rotated pair: the span is that of dx and dy.
+  // A rotated pair has the span of dx and dy.
   const Found rotated = found({"x'*cos(u) + y'*sin(u) = 0", "y'*cos(u) - x'*sin(u) = 0"});
   EXPECT_EQ(integrals(rotated), (std::vector<std::string>{"x", "y"}));
   expect_constant(rotated);
 }
 
 TEST(Integrability, OneCombinationOfThree) {
-  // A cart on two wheels: the wheels' angles and the heading are bound, the rest is not.
+  // A cart on two wheels: one integral combines the angles of the wheels and the heading; no other exists.
   const Found f = found(
       {"x'*sin(z) - y'*cos(z) = 0", "x'*cos(z) + y'*sin(z) + k*z' = r*u'", "x'*cos(z) + y'*sin(z) - k*z' = r*v'"});
   EXPECT_EQ(f.i.flag, (Ints{3, 2, 1}));
@@ -127,7 +127,7 @@ TEST(Integrability, OneCombinationOfThree) {
 }
 
 TEST(Integrability, AfterAnotherIntegralIsPutIn) {
-  // The heading is constant, and so the knife runs straight.
+  // The heading is constant, so the knife runs straight.
   const Found f = found({"z' = 0", "x' = r*cos(z)*u'", "y' = r*sin(z)*u'"});
   EXPECT_EQ(f.i.flag, (Ints{3}));
   EXPECT_EQ(integrals(f).size(), 3U);
@@ -136,7 +136,7 @@ TEST(Integrability, AfterAnotherIntegralIsPutIn) {
 }
 
 TEST(Integrability, OnTheSurfaceOfAHolonomicConstraint) {
-  // On x = y the form is exact, elsewhere not.
+  // The form is exact on x = y and not elsewhere.
   const Found f = found({"x - y = 0", "z' = x*u' + u*y'"});
   EXPECT_EQ(f.i.flag, (Ints{1}));
   expect_constant(f);
@@ -156,12 +156,12 @@ TEST(Integrability, OfClassicalSystems) {
   EXPECT_EQ(flag("zoo/disc"), (Ints{2, 1, 0}));
   EXPECT_EQ(flag("zoo/rattleback"), (Ints{2, 0}));
   EXPECT_EQ(flag("zoo/vertical-disc"), (Ints{2, 1, 0}));
-  // Each trailer can be reached one bracket later.
+  // Each further trailer is reached by one more bracket.
   EXPECT_EQ(flag("zoo/car-three-trailers"), (Ints{5, 4, 3, 2, 1, 0}));
 }
 
-// Functions f_1, f_2 with random coefficients; the rows are a random mixture of their differentials, and one
-// coefficient is changed in the mutant.
+// `rows` is a random mixture of the differentials of functions f_1, f_2 with random coefficients; in `mutant` one
+// coefficient is changed.
 struct Mixture {
   std::vector<std::string> rows, mutant;
 };
@@ -189,7 +189,7 @@ TEST_P(Mixed, FlagSeesThroughTheMixture) {
   EXPECT_TRUE(f.i.proved);
   for (const IntegrableCombination& c : f.i.combinations) EXPECT_TRUE(c.integral);
   expect_constant(f);
-  // The mutant: f_1 is still an integral, and nothing else is.
+  // The mutant: f_1 is still an integral, and the only one.
   const Found mutant = found(mix.mutant);
   EXPECT_EQ(mutant.i.flag, (Ints{2, 1}));
   ASSERT_EQ(mutant.i.combinations.size(), 1U);

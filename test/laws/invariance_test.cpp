@@ -1,6 +1,6 @@
-// What must not depend on a choice: the coordinates, the dependent ones among them, the quasi-velocities, the way a
-// constraint is written. Residuals of two derivations of the same system are compared at the same motion; no equation
-// of motion is solved but in the last part.
+// Results must not depend on choices: of coordinates, of the dependent ones among them, of quasi-velocities, of the way
+// in which a constraint is written. Residuals of two derivations of one system are compared at the same motion; only
+// the last part solves equations of motion.
 #include <map>
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace anholon::invariance_test {
 namespace {
 
-constexpr double kExact = 1e-24;   // 40 digits, less what inverses and high derivatives take
+constexpr double kExact = 1e-24;   // 40 digits, less those that inverses and high derivatives lose
 constexpr double kRefuted = 1e-6;  // a mutant misses by much more
 constexpr int kPoints = 2;
 constexpr unsigned kJets = 6;  // derivatives carried from one system of coordinates to another
@@ -43,7 +43,7 @@ struct Derived {
                          : e.I(top);
     for (Expr x : u) u_by_top.push_back(gradient(x, top));
   }
-  // dq/du on the manifold, or the identity.
+  // dq/du on the manifold, or the identity for n equations.
   Matrix<Multi> directions(const test::Point& at) const {
     if (!u_by_top.empty()) return test::tangents(*s.model, e, at);
     Matrix<Multi> one(s.m.q.size(), s.m.q.size());
@@ -99,8 +99,8 @@ struct Change {
 // Names are for gtest's output.
 void PrintTo(const Change& c, std::ostream* out) { *out << c.name; }
 
-// The model with its coordinates defined by other ones. What it says of initial values is left out; the first of the
-// new ones starts at 1, since r = 0 is no place for polar coordinates.
+// The text of the model with its coordinates defined by new ones. Its initial values are left out; the first of the new
+// coordinates starts at 1, since polar coordinates are singular at r = 0.
 std::string changed_text(const Change& c) {
   std::string text = test::shipped_text(c.model), defines;
   text = text.substr(0, text.find("\n[initial]") + 1);
@@ -142,7 +142,8 @@ class OtherCoordinates : public testing::TestWithParam<Change> {
   std::shared_ptr<const Model> probe = test::model_of(text_of_places());
   Column places = find_places();
 
-  // The old coordinates as functions of the new: what the reader makes of them in constraints of a model of their own.
+  // The text of a model whose constraints are the old coordinates as functions of the new ones, as the reader makes
+  // them.
   std::string text_of_places() const {
     std::string text = changed_text(GetParam());
     text = text.substr(0, text.find("[initial]"));
@@ -156,7 +157,7 @@ class OtherCoordinates : public testing::TestWithParam<Change> {
       out.push_back(probe->constraints[i].phi);
     return out;
   }
-  // Time, coordinates, multipliers and their derivatives of one model carried to the same symbols of another.
+  // Copies time, coordinates, multipliers and their derivatives to the same symbols of another model.
   static void carry(const Model& from, const test::Point& at, const Model& to, test::Point& there) {
     there.set(to.graph->time(), test::value(from.graph->time(), at));
     for (std::uint32_t a = 0; a < from.coordinates.size(); ++a)
@@ -190,7 +191,7 @@ class OtherCoordinates : public testing::TestWithParam<Change> {
     return test::values_of(rows, probe_point(at));
   }
 
-  // By rule.
+  // The largest misses, by rule of transformation.
   std::map<Rule, double> misses(const Formulation& form, bool solve) const {
     const PrecisionScope precision(40);
     const Derived old_one(old_system, form, {}, solve), new_one(new_system, form, {}, solve);
@@ -223,7 +224,7 @@ TEST_P(OtherCoordinates, ResidualsAreCovectors) {
     }
   }
   EXPECT_GE(compared, 19);
-  // Where the sleigh's frame only turns, the matrix between two pairs of independent coordinates may be symmetric.
+  // The sleigh's frame turns only, so the matrix between two pairs of independent coordinates may be symmetric.
   if (std::string(GetParam().name) == "TurningSleigh")
     EXPECT_GE(refuted, 9);
   else
@@ -247,7 +248,7 @@ std::vector<std::vector<std::size_t>> subsets(std::size_t n, std::size_t k) {
   return all;
 }
 
-// B' = B X, and the residuals of one are X^T those of the other.
+// For B' = B X, the residuals r' of b are X^T r of those of a.
 std::map<Rule, double> misses_between(const Derived& a, const Derived& b) {
   const PrecisionScope precision(40);
   std::map<Rule, double> worst;
@@ -264,7 +265,7 @@ std::map<Rule, double> misses_between(const Derived& a, const Derived& b) {
 
 struct Choices {
   const char* name;
-  std::string text, initial;  // a state at which all that can be eliminated can be
+  std::string text, initial;  // a state at which every choice can be eliminated
   std::size_t admissible;     // choices of dependent coordinates
 };
 void PrintTo(const Choices& c, std::ostream* out) { *out << c.name; }
@@ -304,7 +305,7 @@ TEST_P(OtherDependents, TurnResidualsByARegularMatrix) {
   const auto all = admissible();
   EXPECT_EQ(all.size(), GetParam().admissible);
   ASSERT_GE(all.size(), 2U);
-  const bool diagonal = std::string(GetParam().name) == "Sleigh";  // x for y, and th as before: X is its own transpose
+  const bool diagonal = std::string(GetParam().name) == "Sleigh";  // x for y, and th stays: X is its own transpose
   int compared = 0, refuted = 0;
   for (const Formulation* form : formulations()) {
     if (form->unknowns != Unknowns::coordinates || !form->obstacle(s.m).empty() ||
@@ -326,7 +327,7 @@ TEST_P(OtherDependents, TurnResidualsByARegularMatrix) {
 INSTANTIATE_TEST_SUITE_P(Model, OtherDependents, testing::ValuesIn(choices()),
                          [](const auto& p) { return p.param.name; });
 
-// The quasi-velocities of one text against those of another, on the same constraints.
+// Compares the quasi-velocities of one text with those of another, on the same constraints.
 void compare_quasi(const std::string& text, const std::string& one, const std::string& another) {
   const System a(text + "[quasi]\n" + one), b(text + "[quasi]\n" + another);
   int compared = 0, refuted = 0;
@@ -336,7 +337,7 @@ void compare_quasi(const std::string& text, const std::string& one, const std::s
     const Derived first(a, *form, {}, true), other(b, *form, {}, true);
     ++compared;
     for (std::uint64_t seed = 1; seed <= kPoints; ++seed) {
-      // Two models, two graphs: the same values of the same jets.
+      // The two models have two graphs: the same jets get the same values.
       const std::optional<test::Point> at = test::manifold_point(*a.model, first.e, seed);
       ASSERT_TRUE(at);
       test::Point there = test::random_point(*b.model, seed);
@@ -376,8 +377,8 @@ TEST(OtherQuasiVelocities, OfTheSleigh) {
                 "v1 = \"x' + th'\"\nv2 = \"th'*(2 + x^2) - y'/2\"\n");
 }
 
-// At r = 0, p = s = 0 the blade's constraint has the row 0, and no velocity is independent of it: the
-// list of quasi-velocities stays empty, and the forms that want n of them end in an internal fault.
+// At r = 0, p = s = 0 the row of the blade's constraint is zero. The list of quasi-velocities is completed
+// nevertheless: it has n of them.
 TEST(OtherQuasiVelocities, AreCompletedAtASingularState) {
   const System s(test::replaced(changed_text(changes()[0]), "r = 1", "r = 0"));
   const Elimination e = elimination_for(s.m, Unknowns::quasi_velocities, {}, {});
@@ -455,7 +456,7 @@ TEST_P(OtherWords, ForAConstraintChangeTheMultiplierOnly) {
   EXPECT_EQ(a.forces.back().first, "N");
   const Multi g = GetParam().value(a);
   EXPECT_LE(distance_of(values_of(b.lambda), values_of(a.lambda), g), kDigits);
-  // Mutants: lambda taken for N; the factor the wrong way round.
+  // Mutants: lambda in place of N; the factor on the wrong side.
   EXPECT_GT(distance_of(values_of(b.lambda), values_of(a.lambda)), kRefuted);
   EXPECT_GT(distance_of(values_of(a.lambda), values_of(b.lambda), g), kRefuted);
 }

@@ -1,6 +1,6 @@
-// The launcher of the zoo: budgets of mass, momentum and energy over the whole flight, kept at rest while the motion is
-// computed in axes that turn; the times of its events at any tolerance; the same flight integrated here from Newton's
-// law in axes at rest.
+// The launcher of the zoo: budgets of mass, momentum and energy over the whole flight, taken in axes at rest while the
+// motion is computed in turning axes; the times of its events at any tolerance; and the same flight, integrated here
+// from Newton's law in axes at rest.
 #include <array>
 #include <cmath>
 
@@ -36,8 +36,9 @@ Flight flight(const std::string& text, const char* tolerance = "1e-13") {
 
 std::string launcher() { return test::shipped_text("zoo/launcher"); }
 
-// States that add up what flows and acts, and monitors of what they lack. Each in units in which it has the size of the
-// positions, for which the tolerance is meant. What is dropped takes its momentum and energy along.
+// Adds states that integrate flows and forces, and monitors of the differences from the budgets. Each state is scaled
+// to the size of the positions, for which the tolerance is meant. Dropped parts take their momentum and energy with
+// them.
 std::string with_budgets(std::string text) {
   text = test::replaced(text, "state.fuel = {rate = \"-flow\", initial = \"mp1\"}", R"toml(
 [state]
@@ -84,7 +85,7 @@ TEST(Launcher, ItsBudgetsClose) {
   const Flight f = flight(text);
   for (const char* each : {"mass_given_out", "momentum_x", "momentum_y", "energy"})
     EXPECT_LT(std::abs(f.end.at(each)), kClosed) << each;
-  // Mutants: another sense of the turning, thrust that is not that of what flows.
+  // Mutants: the axes turn in the other sense; the thrust does not belong to the flow.
   const Flight turned = flight(test::replaced(text, "observer.spin = \"wE*ez\"", "observer.spin = \"-wE*ez\""));
   EXPECT_GT(std::abs(turned.end.at("momentum_x")), 1e-3);
   const Flight pushed = flight(test::replaced(text, "expelled_velocity = \"-ue", "expelled_velocity = \"-1.000001*ue"));
@@ -139,7 +140,7 @@ Row rate(double t, const Row& s, int stage, double wE) {
           (flow * out * uy - drag * a.vy) / mass - mu * s[1] / (r * r * r)};
 }
 
-// Where it is in axes at rest after 600 s, and when the dynamic pressure was greatest.
+// The position and velocity in axes at rest after 600 s, and the time of the greatest dynamic pressure.
 std::pair<Row, double> at_rest(double wE) {
   constexpr double kStep = 0.01;
   const auto ahead = [](Row a, double c, const Row& b) {
@@ -155,7 +156,7 @@ std::pair<Row, double> at_rest(double wE) {
       const double n = std::round((t - from) / h);
       const Row a = rate(t, s, stage, wE), b = rate(t + h / 2, ahead(s, h / 2, a), stage, wE),
                 c = rate(t + h / 2, ahead(s, h / 2, b), stage, wE), d = rate(t + h, ahead(s, h, c), stage, wE);
-      // q'/q = -h'/8500 + 2 v.v'/v^2, v of the air
+      // q'/q = -h'/8500 + 2 v.v'/v^2, where v is the velocity relative to the air.
       const Air v = air(s, wE);
       const double growth = -(s[0] * s[2] + s[1] * s[3]) / std::hypot(s[0], s[1]) / 8500 +
                             2 * (v.vx * (a[2] + wE * s[3]) + v.vy * (a[3] - wE * s[2])) / (v.speed * v.speed);

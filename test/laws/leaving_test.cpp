@@ -1,7 +1,7 @@
-// Where a body leaves a surface that carries it: the multiplier of the surface passes zero there, whatever the coordinates.
+// The multiplier of a surface passes zero at the place where a carried body leaves it, in any coordinates.
 //
-// From the top of a sphere of radius R with the speed v, a particle leaves at cos(theta) = (2 + w)/3, w = v^2/(g R); a ball
-// that rolls, whose centre is R from that of the sphere, at cos(theta) = (10 + 7 w)/17.
+// From the top of a sphere of radius R with the speed v, a particle leaves at cos(theta) = (2 + w)/3, w = v^2/(g R); a
+// ball that rolls, whose centre is R from that of the sphere, at cos(theta) = (10 + 7 w)/17.
 #include <gtest/gtest.h>
 
 #include "simulation/first_pull.h"
@@ -20,7 +20,7 @@ std::string constraint(const std::string& name, const std::string& equation) {
   return "[[constraint]]\nname = \"" + name + "\"\nequation = \"" + equation + "\"\n";
 }
 
-// On a plane curve, in space, and in polar coordinates.
+// The particle on a plane curve, in space, and in polar coordinates.
 const std::string kParticles[3] = {
     "coordinates = [\"x\", \"z\"]\n" + kHead +
         "[[particle]]\nname = \"bead\"\nmass = \"m\"\nposition = \"x*ex + z*ez\"\n" +
@@ -32,7 +32,7 @@ const std::string kParticles[3] = {
         "[[particle]]\nname = \"bead\"\nmass = \"m\"\nposition = \"r*sin(u)*ex + r*cos(u)*ez\"\n" +
         constraint("sphere", "r = R") + "[initial]\nr = \"R\"\n\"u'\" = \"v/R\"\n"};
 
-// `inertia`: of the ball, in m a^2.
+// `inertia`: moment of inertia of the ball, in m a^2.
 std::string ball(const std::string& inertia) {
   return "coordinates = [\"x\", \"z\", \"phi\"]\n" + kHead +
          "point.C = \"x*ex + z*ez\"\n[[body]]\nname = \"bead\"\nmass = \"m\"\ninertia = [\"" + inertia + "\", \"" +
@@ -42,7 +42,7 @@ std::string ball(const std::string& inertia) {
 }
 
 struct Left {
-  double height = 0;  // in relation to R
+  double height = 0;  // in units of R
   std::string note;
 };
 
@@ -99,7 +99,7 @@ TEST(Leaving, OfABallThatRollsIsAtTenSeventeenths) {
   EXPECT_GT(std::abs(leaves(ball("2*m*a^2/3")).height - (10 + 7 * kW) / 17), 1e-3);
 }
 
-// A form without multipliers tells the same time, and not that of a row.
+// A form without multipliers reports the same time, which is not the time of a row.
 TEST(Leaving, IsLocatedInAllForms) {
   const auto note = [](const char* form) {
     Scenario s;
@@ -116,7 +116,7 @@ TEST(Leaving, IsLocatedInAllForms) {
   EXPECT_EQ(note("maggi"), note("routh"));
 }
 
-// Nothing is told of a motion that stays on the surface, nor of a pendulum that swings.
+// No note is made on a motion that stays on the surface, nor on a pendulum that swings.
 TEST(Leaving, IsNotToldOfWhatStays) {
   const auto notes = [](const std::string& text) {
     Scenario s;
@@ -129,12 +129,13 @@ TEST(Leaving, IsNotToldOfWhatStays) {
     return r.notes;
   };
   const std::string hangs = test::replaced(kParticles[0], "z = \"R\"", "z = \"-R\"");
-  // It swings up to 90 degrees at v^2 = 2 g R, and passes the top at v^2 = 5 g R: between them its rod is pressed.
+  // The pendulum swings up to 90 degrees at v^2 = 2 g R and passes the top at v^2 = 5 g R; between these speeds its rod
+  // is pressed.
   EXPECT_TRUE(notes(test::replaced(hangs, "v = 0.6", "v = 5.4")).empty());
   EXPECT_EQ(notes(test::replaced(hangs, "v = 0.6", "v = 5.5")).size(), 1u);
   EXPECT_EQ(notes(test::replaced(hangs, "v = 0.6", "v = 8.5")).size(), 1u);
   EXPECT_TRUE(notes(test::replaced(hangs, "v = 0.6", "v = 8.6")).empty());
-  // Released with its rod level, a pendulum starts without a force.
+  // A pendulum that is released with its rod level starts without a force.
   EXPECT_TRUE(notes(test::replaced(kParticles[0], "z = \"R\"\n\"x'\" = \"v\"", "x = \"R\"")).empty());
 }
 

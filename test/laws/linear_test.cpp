@@ -1,4 +1,4 @@
-// Linear models against derivations by hand, published numbers, and each other.
+// Linear models are compared with derivations by hand, published numbers, and each other.
 #include <gtest/gtest.h>
 
 #include "linear/linearize.h"
@@ -29,7 +29,7 @@ LinearModel linear(const std::string& text) {
   return linear(*scenario(model_of(text), choice), choice);
 }
 
-// How far the spectrum is from holding the eigenvalue.
+// The distance of the eigenvalue re + i im from the nearest one of the spectrum.
 double miss(const LinearModel& m, const Multi& re, const Multi& im) {
   double best = 1e300;
   for (const Eigenvalue& e : m.spectrum) best = std::min(best, to_double(modulus({e.value.re - re, e.value.im - im})));
@@ -62,7 +62,7 @@ TEST(LinearModels, PendulumSwingsByTheStiffnessOfItsRod) {
   EXPECT_EQ(m.spectrum.size(), 2U);
 }
 
-// The mutant: the direction of the reaction is held while the bob moves.
+// The mutant: the reaction keeps its direction while the bob moves.
 TEST(LinearModels, WithoutThatStiffnessItDoesNot) {
   const PrecisionScope scope(kDigits);
   const StateChoice choice;
@@ -77,7 +77,7 @@ TEST(LinearModels, WithoutThatStiffnessItDoesNot) {
   EXPECT_GT(miss(m, Multi(0), sqrt(Multi(10) / Multi(3))), 0.1);
 }
 
-// Upside down, by a guess above.
+// The pendulum is upside down, since its y is guessed above the pivot.
 TEST(LinearModels, PendulumFalls) {
   const PrecisionScope scope(kDigits);
   const LinearModel m = linear(replaced(kPendulum, "y = -3", "y = 3"));
@@ -96,7 +96,7 @@ gravity.field = "-10*ey"
     EXPECT_LT(miss(m, Multi(0), sqrt(Multi(5) * (Multi(2) + Multi(sign) * sqrt(Multi(2))))), kExact);
 }
 
-// Constraints of order 2 and 3 prescribe what x does; y is free of them.
+// Constraints of order 2 and 3 prescribe the motion of x; y is free of them.
 TEST(LinearModels, OrdersTwoAndThree) {
   const PrecisionScope scope(kDigits);
   const auto text = [](const std::string& constraint) {
@@ -171,14 +171,14 @@ TEST(LinearModels, DiscThatTurnsSteadily) {
   ASSERT_TRUE(square < Multi(0));
   EXPECT_LT(miss(m, Multi(0), sqrt(-square)), 1e-25);
   EXPECT_EQ(zeros(m), 2);
-  // The mutant: gravity's share with the other sign.
+  // The mutant: the term of gravity has the other sign.
   EXPECT_GT(miss(m, Multi(0),
                  sqrt(abs(Multi(square - Multi(2) * Multi(Rational(981, 100)) / Multi(2) *
                                              sin(Multi(Rational(13, 10))) / (Multi(5) / Multi(16)))))),
             0.1);
 }
 
-// One mechanics, whatever the equations.
+// All forms give the same linear model.
 TEST(LinearModels, FormsAgree) {
   const PrecisionScope scope(kDigits);
   const auto model = shipped("zoo/disc");
@@ -193,9 +193,10 @@ TEST(LinearModels, FormsAgree) {
   }
 }
 
-// A cart with a pendulum, pushed by u, its rod a holonomic constraint: the textbook's A, B, C, D. With M, m, l, g and
-// the rod downwards
-//   x'' = (u + m g th)/M,  th'' = -((M + m) g th + u)/(M l),  rod's pull (lambda in the direction of the rod) = m g to first order.
+// A cart with a pendulum, pushed by u, whose rod is a holonomic constraint: A, B, C, D of a textbook. With M, m, l, g
+// and the rod downwards,
+//   x'' = (u + m g th)/M,  th'' = -((M + m) g th + u)/(M l),  pull of the rod (lambda in its direction) = m g to first
+// order.
 TEST(LinearModels, InputsAndOutputs) {
   const PrecisionScope scope(kDigits);
   const auto model = model_of(R"(title = "cart"
@@ -211,7 +212,7 @@ guess = {b = -2}
 )");
   Graph& g = *model->graph;
   const StateChoice choice;
-  // The formulas of signals belong to the model; the system is a copy of it.
+  // The formulas of signals belong to the model, of which the system is a copy.
   const Expr x2 = g.jet(0, 2), b = g.jet(2, 0);
   const Signals signals{{"push"},
                         {"acceleration", "height", "pull", "jerk"},
@@ -229,7 +230,7 @@ guess = {b = -2}
     for (std::size_t k = 0; k < 4; ++k) EXPECT_LT(std::abs(to_double(m.A(i, k)) - A[i][k]), kExact);
     EXPECT_LT(std::abs(to_double(m.B(i, 0)) - B[i]), kExact);
   }
-  ASSERT_EQ(m.outputs.size(), 3U);  // the jerk has no place
+  ASSERT_EQ(m.outputs.size(), 3U);  // the state does not give the jerk
   ASSERT_EQ(m.notes.size(), 1U);
   for (std::size_t k = 0; k < 4; ++k) {
     EXPECT_LT(std::abs(to_double(m.C(0, k)) - A[2][k]), kExact);
@@ -240,7 +241,7 @@ guess = {b = -2}
   EXPECT_LT(std::abs(to_double(m.D(1, 0))), kExact);
 }
 
-// An input that moves a constraint comes with its rate, which no B shows.
+// An input in a constraint acts by its rate as well, which B cannot hold.
 TEST(LinearModels, InputsInConstraintsAreLeftOut) {
   const PrecisionScope scope(kDigits);
   const auto model = model_of(
@@ -253,7 +254,7 @@ TEST(LinearModels, InputsInConstraintsAreLeftOut) {
   EXPECT_EQ(l.results[0].model.notes.size(), 1U);
 }
 
-// A coordinate that seems to be without influence where it is, and is not.
+// A coordinate has no influence at the point itself, but has one beside it.
 TEST(LinearModels, InfluenceIsLookedForElsewhere) {
   const PrecisionScope scope(kDigits);
   const std::string text = R"(title = "t"
@@ -271,7 +272,7 @@ potential.pull = "(2 + STEEP*sin(x))*y^2"
   EXPECT_TRUE(linear(replaced(replaced(text, "(2 + STEEP*sin(x))*y^2", "x^4 + y^2"), "\"x'\" = 1", "")).cyclic.empty());
 }
 
-// What depends on time is not steady, even where nothing moves.
+// A model that depends on time is not steady, even if nothing moves.
 TEST(LinearModels, StiffnessThatSwings) {
   const PrecisionScope scope(kDigits);
   const LinearModel m = linear("title = \"t\"\ncoordinates = [\"x\"]\nparticle = [{name = \"p\", mass = 1, position = "
@@ -329,13 +330,13 @@ TEST(LinearModels, WhippleBicycleAsPublished) {
     const LinearResult& r = l.results[static_cast<std::size_t>(v)];
     ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
     EXPECT_EQ(r.model.motion, v == 0 ? LinearModel::Motion::equilibrium : LinearModel::Motion::steady);
-    EXPECT_EQ(r.model.spectrum.size(), 5U);  // the fifth is 0: of the speed
+    EXPECT_EQ(r.model.spectrum.size(), 5U);  // the fifth, of the speed, is 0
     EXPECT_EQ(zeros(r.model), 1);
     for (const Eigenvalue& e : published(Multi(v)))
       EXPECT_LT(miss(r.model, e.value.re, e.value.im), 1e-12 * std::max(1.0, to_double(modulus(e.value))))
           << "v = " << v;
   }
-  // Table 2 itself, at 5 m/s.
+  // Table 2 itself gives these at 5 m/s.
   for (const auto& [re, im] :
        {std::pair{"-0.77534188219585", "4.46486771378823"}, {"-0.32286642900409", "0"}, {"-14.0783896927982", "0"}})
     EXPECT_LT(miss(l.results[5].model, Multi(*parse_rational(re)), Multi(*parse_rational(im))), 1e-12);
@@ -348,7 +349,7 @@ TEST(LinearModels, WhippleBicycleAsPublished) {
   EXPECT_TRUE(l.crossings[1].destabilizes);
 }
 
-// The mutant: a trail a hundredth of a millimetre longer.
+// The mutant: the trail is a hundredth of a millimetre longer.
 TEST(LinearModels, AnotherBicycleHasOtherEigenvalues) {
   const PrecisionScope scope(kDigits);
   const LinearModel m = linear(replaced(shipped_text("zoo/whipple"), "c = 0.08 ", "c = 0.08001 "));

@@ -1,5 +1,5 @@
-// What the Mac-Millan equations rest on [Q 7, 13] (theory: classics), and where the paper's "holonomic, hence the
-// bracket vanishes" ends.
+// The relation on which the Mac-Millan equations rest [Q 7, 13] (theory: classics), and the limits of the paper's
+// "holonomic, hence the bracket vanishes".
 #include <gtest/gtest.h>
 
 #include "mechanics/integrability.h"
@@ -54,10 +54,10 @@ TEST(MacMillan, TheBracketOfAnIntegrableConstraintInVelocityFormStays) {
   const Expr m = put_masses(*s.model, s.m.points[0].weight), q2 = s.m.q[1], rate = s.m.qd[0];
   const Expr expected = m * pow(q2, Rational(2)) * pow(rate, Rational(2));
   EXPECT_TRUE(proved_zero(put_masses(*s.model, bracket(s, e)) - expected));
-  // It is integrable all the same.
+  // The constraint is integrable nevertheless.
   PointValues near([](const Node&) { return 0.7; });
   EXPECT_EQ(integrability(s.m, {0}, near).integrable(), 1);
-  // With the bracket the equations are those of Maggi, without it they are not.
+  // The equations with the bracket are those of Maggi; without the bracket they are not.
   const Equations with = find_formulation("mac-millan")->equations(s.m, e),
                   maggi = find_formulation("maggi")->equations(s.m, e);
   EXPECT_TRUE(test::proved({with.left, -with.right, -maggi.left, maggi.right}));
@@ -65,14 +65,14 @@ TEST(MacMillan, TheBracketOfAnIntegrableConstraintInVelocityFormStays) {
   EXPECT_GT(test::miss(s, e, {with.left, -with.right, {bracket(s, e)}, -maggi.left, maggi.right}), kRefuted);
 }
 
-// Solved for a coordinate, f holds independent coordinates alone, and the bracket vanishes.
+// If a holonomic constraint is solved for a coordinate, f holds independent coordinates only, and the bracket vanishes.
 TEST(MacMillan, TheBracketOfAHolonomicConstraintVanishes) {
   for (const char* equation : {"q2 = exp(q1)", "q2 = q1^2*sin(t)"}) {
     const System s = bound_by(equation);
     const Elimination e = elimination_for(s.m, Unknowns::coordinates, {}, {1});
     EXPECT_TRUE(proved_zero(bracket(s, e))) << equation;
   }
-  // Not so where the lifted constraint still holds the dependent coordinate.
+  // The bracket stays if the lifted constraint still holds the dependent coordinate.
   const System s = bound_by("q2^2 = exp(2*q1)");
   const Elimination e = elimination_for(s.m, Unknowns::coordinates, {}, {1});
   EXPECT_GT(test::miss(s, e, {{bracket(s, e)}}), kRefuted);

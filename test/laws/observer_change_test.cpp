@@ -1,4 +1,4 @@
-// The same motion described by two observers: luo-zhao-example-2 in the frame of the plane and in an inertial frame.
+// Two observers describe the same motion: luo-zhao-example-2 in the frame of the plane and in an inertial frame.
 #include <gtest/gtest.h>
 
 #include "simulation/simulate.h"
@@ -8,7 +8,7 @@
 namespace anholon::observer_change_test {
 namespace {
 
-// Both are integrated at 1e-15; two hundred round-offs of coordinates of size one remain.
+// Both are integrated with the tolerance 1e-15; two hundred round-offs of coordinates of size one remain.
 constexpr double kSameMotion = 5e-14;
 
 using Rows = std::vector<std::vector<long double>>;

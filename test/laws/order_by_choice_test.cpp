@@ -1,6 +1,7 @@
-// The order m of a form by choice: constraints of lower order, and none, are lifted to m, and the equations of order m
-// say what they said. Forms with multipliers are E - G - N in all jets for every m; the others are B^T (E - G) on the
-// manifold of the lifted constraints, B the tangents found there by numbers.
+// The order m of a form can be chosen: constraints of lower order are lifted to m, and the equations of order m are
+// equivalent to the original ones, also without constraints. Forms with multipliers are E - G - N in all jets for every
+// m; the others are B^T (E - G) on the manifold of the lifted constraints, where B are tangents that are found
+// numerically.
 #include <gtest/gtest.h>
 
 #include "setup/eliminate.h"
@@ -57,7 +58,7 @@ TEST_P(OrderByChoice, FormsWithMultipliersHoldForEveryOrder) {
   }
   EXPECT_EQ(forms, 4);
   EXPECT_EQ(order_of(s.m, {}), lowest);
-  // A mutant: the factor of another order.
+  // A mutant has the factor of another order.
   const Column wrong = Rational(1, 3) * (gradient(T(s.m, 3), jets(*s.model, 3)) - Rational(3) * gradient(s.m.T, s.m.q));
   EXPECT_GT(miss_in_all_jets({wrong, right_side(s.m)}), kRefuted);
 }
@@ -89,7 +90,7 @@ TEST_P(OrderByChoice, FormsWithoutMultipliersAreTheSameContraction) {
   EXPECT_GE(forms, 12);
 }
 
-// The energies of one order with an elimination of another are no equations of motion.
+// Energies of one order with an elimination of another order give no equations of motion.
 class LiftedConstraints : public OrderByChoice {};
 TEST_P(LiftedConstraints, EnergiesOfAnotherOrderAreRefuted) {
   const unsigned m = lowest + 1;
@@ -110,9 +111,9 @@ TEST_P(LiftedConstraints, EnergiesOfAnotherOrderAreRefuted) {
 std::string case_name(const testing::TestParamInfo<std::size_t>& p) { return cases()[p.param].name; }
 INSTANTIATE_TEST_SUITE_P(System, OrderByChoice, testing::Range<std::size_t>(0, 5), case_name);
 INSTANTIATE_TEST_SUITE_P(System, LiftedConstraints, testing::Range<std::size_t>(1, 5),
-                         case_name);  // those that have any
+                         case_name);  // the systems that have constraints
 
-// Quasi-velocities are lifted with the constraints, and keep their own names.
+// Quasi-velocities are lifted with the constraints and keep their own names.
 TEST(OrderOfQuasiVelocities, TheirDerivativesStayFree) {
   const auto model = test::model_of(
       "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", \"z\"]\n"

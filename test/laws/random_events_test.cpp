@@ -1,5 +1,5 @@
-// Ten thousand random systems with events against closed forms: the right events, in the right order, at the right
-// times, and the right end; or an honest outcome. 300 of them in the fast suite.
+// Ten thousand random systems with events, 300 in the fast suite, are compared with closed forms: the events, their
+// order, their times and the end agree, or the run ends with an honest outcome.
 #include <cstdio>
 #include <cstdlib>
 
@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kFew = 300, kAll = 10'000;
 constexpr long double kTime = 1e-10L, kGrazing = 1e-13L,
                       kSpeed = 10;   // of an event; of its formula, over the slope there
-constexpr long double kEnd = 1e-8L;  // state at the end: what events and waves have made of round-off
+constexpr long double kEnd = 1e-8L;  // error of the state at the end: round-off that events and waves enlarge
 
 struct Verdict {
   bool decided = false, honest = false;
@@ -56,7 +56,7 @@ Verdict judge(std::uint64_t seed) {
     v.fault = std::to_string(r.events.size()) + " events, not " + std::to_string(expected.events.size()) + both;
     return v;
   }
-  long double carried = 0;  // by which events that graze shift what follows
+  long double carried = 0;  // the shift of later events by events that graze
   for (std::size_t k = 0; k < r.events.size(); ++k) {
     const auto& e = expected.events[k];
     const long double miss = std::abs(std::strtold(r.events[k].t.text().c_str(), nullptr) - e.t);
@@ -70,7 +70,7 @@ Verdict judge(std::uint64_t seed) {
     const auto& names = rows.names();
     const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), m.name(i)) - names.begin());
     const long double x = std::strtold(rows.rows().back()[at].c_str(), nullptr);
-    // Where an event ends the motion the last row is that before it.
+    // If an event ends the motion, the last row is the one before it.
     if (!expected.stopped && std::abs(x - expected.x[i]) > (kEnd + kSpeed * carried) * (1 + std::abs(expected.x[i])))
       v.fault = m.name(i) + " ends elsewhere" + both;
   }

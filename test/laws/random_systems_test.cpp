@@ -1,5 +1,6 @@
-// 200 random systems, each over a second of motion: Newton's law on dense output, a second form of the equations, and
-// every motion that does not reach its end in a named outcome that the second form or 30 digits confirm.
+// 200 random systems, each over a second of motion: Newton's law holds on dense output, a second form of the equations
+// gives the same motion, and a motion that does not reach its end has a named outcome that the second form or 30 digits
+// confirm.
 #include <cmath>
 #include <cstdio>
 
@@ -40,7 +41,7 @@ Motion run(const std::shared_ptr<const Model>& model, const Formulation& form, i
   return m;
 }
 
-// The one of the forms without multipliers that the seed names.
+// The form without multipliers that the seed selects.
 const Formulation* second_form(const Model& model, std::uint64_t seed) {
   const Mechanics m = mechanics(model);
   std::vector<const Formulation*> list;
@@ -49,13 +50,13 @@ const Formulation* second_form(const Model& model, std::uint64_t seed) {
   return list.empty() ? nullptr : list[seed % list.size()];
 }
 
-// The largest difference of two motions, each column in relation to its size; the last row of a motion that stops is
-// its own.
+// The largest difference of two motions, each column in relation to its size. The last row of a motion that stops is
+// left out.
 double difference(const Motion& a, const Motion& b) {
   double worst = 0;
   const std::size_t rows = std::min(a.rows.rows().size(), b.rows.rows().size()) - (a.report.outcome.ok() ? 0 : 1);
   for (std::size_t k = 0; k < a.rows.names().size(); ++k) {
-    if (a.rows.names()[k].rfind("lambda", 0) == 0) continue;  // of redundant constraints, one choice among many
+    if (a.rows.names()[k].rfind("lambda", 0) == 0) continue;  // if constraints are redundant, one choice of many
     double size = 1, miss = 0;
     for (std::size_t i = 0; i < rows; ++i) {
       const double x = std::stod(a.rows.rows()[i][k]), y = std::stod(b.rows.rows()[i][k]);
@@ -111,7 +112,7 @@ TEST_P(RandomSystems, AreSolvedOrStopForAReason) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomSystems, testing::Range(0, kShards));
 
-// A force that is wrong by one part in a million is seen.
+// A force that is wrong by one part in a million is noticed.
 TEST(RandomSystemsMutant, AnotherForceIsAnotherMotion) {
   int seen = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {

@@ -1,5 +1,5 @@
-// The reactions as formulas (theory: elimination): on a motion, found by numbers, they are the multipliers and
-// reactions of that motion; so they are where a form without multipliers has put in the dependent accelerations.
+// The reactions as formulas (theory: elimination). At points of a motion, which are found numerically, they equal the
+// multipliers and reactions of that motion, also if a form without multipliers has put in the dependent accelerations.
 #include <gtest/gtest.h>
 
 #include "formulation/reactions.h"
@@ -29,7 +29,7 @@ class ReactionFormulas : public testing::TestWithParam<unsigned> {
       if (auto at = test::motion_point(m, e.dependent, GetParam(), seed)) points.push_back(*at);
     ASSERT_EQ(points.size(), 2U);
   }
-  // By how much formulas miss the values of others.
+  // The relative difference of the values of formulas from those of others.
   double apart(const Column& formulas, const Column& others, const test::Point& at) const {
     const std::vector<Multi> want = test::values(put_masses(*model, others), at);
     return test::largest(test::plus(test::values(put_masses(*model, formulas), at), want, -1)) /
@@ -59,7 +59,7 @@ TEST_P(ReactionFormulas, AreTheReactionsOfTheMotion) {
   }
 }
 
-// The rows D of the formulas in lambda are those of E - G, in all jets; the other rows are so on a motion only.
+// The rows D of the formulas in lambda are those of E - G in all jets; the other rows are so on a motion only.
 TEST_P(ReactionFormulas, SolveTheEquationsOfTheDependentCoordinates) {
   const Elimination e = elimination_of_reactions(m, {}, {});
   const anholon::ReactionFormulas r = reaction_formulas(m, *find_formulation("routh"), e);
@@ -72,7 +72,7 @@ TEST_P(ReactionFormulas, SolveTheEquationsOfTheDependentCoordinates) {
   EXPECT_LE(apart(e.D(N), e.D(r.by_motion), anywhere), kExact);
   EXPECT_GT(apart(e.I(N), e.I(r.by_motion), anywhere), kRefuted);
   EXPECT_LE(apart(e.I(N), e.I(r.by_motion), points[0]), kExact);
-  // A mutant: the inverse not transposed.
+  // A mutant: the inverse is not transposed.
   const Column a_D = e.D(lagrange_operator(m) - forces(m));
   Column wrong;
   for (std::size_t k = 0; k < 2; ++k) wrong.push_back(e.Phi_D_inverse[k][0] * a_D[0] + e.Phi_D_inverse[k][1] * a_D[1]);
@@ -82,7 +82,7 @@ TEST_P(ReactionFormulas, SolveTheEquationsOfTheDependentCoordinates) {
 INSTANTIATE_TEST_SUITE_P(Order, ReactionFormulas, testing::Values(0U, 1U, 2U, 3U),
                          [](const auto& p) { return "m" + std::to_string(p.param); });
 
-// Constraints that say the same have one multiplier, and a reaction that an input keeps has none.
+// Equivalent constraints share one multiplier, and a reaction that an input keeps has none.
 TEST(ReactionFormulasOf, RedundantAndServoConstraints) {
   const std::string head =
       "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", 0]\n";

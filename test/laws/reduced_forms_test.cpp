@@ -1,5 +1,5 @@
-// Every form without multipliers is B^T (E - G) = 0 on the manifold of the constraints, B the tangents found there by
-// numbers; at random free higher derivatives, so that those that must cancel do. For every shipped model.
+// For every shipped model, every form without multipliers is B^T (E - G) = 0 on the manifold of the constraints, where
+// B are tangents that are found numerically. Free higher derivatives are random, so derivatives that must cancel do.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -28,7 +28,7 @@ struct System {
 class ReducedForms : public testing::TestWithParam<std::string> {};
 
 TEST_P(ReducedForms, AreTheContractionOfNewtonsLaw) {
-  // All forms of the bicycle take a while: these alone, without ANHOLON_LONG=1.
+  // All forms of the bicycle take long: without ANHOLON_LONG=1 only these are tested.
   const std::set<std::string> quick{"kane", "maggi"};
   const bool quick_only = GetParam() == "zoo/whipple" && !std::getenv("ANHOLON_LONG");
   const System s(test::shipped(GetParam()));
@@ -43,7 +43,7 @@ TEST_P(ReducedForms, AreTheContractionOfNewtonsLaw) {
 INSTANTIATE_TEST_SUITE_P(Model, ReducedForms, testing::ValuesIn(test::shipped_models()),
                          [](const auto& p) { return test::test_name(p.param); });
 
-// By how much equations miss on motions of the system, relative to their sides. Returns nullopt if no point of a motion is
+// The error of equations on motions of the system, relative to their sides. Returns nullopt if no point of a motion is
 // found.
 std::optional<double> miss_on_motion(EquationsOfMotion& motion, const Column& left, const Column& right) {
   if (motion.on_motion().empty()) return std::nullopt;
@@ -59,10 +59,10 @@ std::optional<double> miss_on_motion(EquationsOfMotion& motion, const Column& le
   return most;
 }
 
-// The n equations of Udwadia and Kalaba hold the reactions as functions of the state, which no contraction sees: all n hold on
-// every motion of Routh's equations. With twice the reactions, whose contraction is the same, they do not.
+// The n equations of Udwadia and Kalaba hold the reactions as functions of the state, which no contraction shows. All n
+// hold on every motion of Routh's equations; with twice the reactions, whose contraction is the same, they do not hold.
 TEST(UdwadiaKalaba, HoldsAcrossTheConstraints) {
-  constexpr double kHolds = 1e-7;  // doubles, less what a nearly singular point takes
+  constexpr double kHolds = 1e-7;  // doubles, less the digits that a nearly singular point loses
   const Formulation& form = *find_formulation("udwadia-kalaba");
   int judged = 0;
   for (const std::string& name : test::shipped_models()) {
@@ -86,8 +86,7 @@ TEST(UdwadiaKalaba, HoldsAcrossTheConstraints) {
   EXPECT_GE(judged, 20);
 }
 
-// As many constraints as coordinates: nothing is left to be said, by no equations. Ends in a crash as long as the
-// product of a column and a matrix without columns reads an entry of it (Boltzmann-Hamel's: in an internal fault).
+// With as many constraints as coordinates, the forms without multipliers have no equations.
 TEST(FullyConstrained, LeavesNoEquations) {
   const System s(test::model_of(
       "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = \"2\"\nposition = [\"x\", \"y\", \"0\"]\n"

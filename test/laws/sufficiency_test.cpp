@@ -1,10 +1,11 @@
-// The sufficiency of Routh's equations as a theorem that runs [L 2.8-2.13] (theory: certificate). Of a motion that
-// satisfies [L 2.7], reactions of the holonomic and of the nonholonomic constraints are taken as the paper allows: any
-// ideal R^H, any R^N with the generalized reactions of [L 2.6]. What Newton's law then misses on each particle, f_i,
-// does no work in any virtual displacement, R^N - f is ideal again, and with it Newton's law holds for each particle.
+// The sufficiency of Routh's equations, tested numerically [L 2.8-2.13] (theory: certificate). For a motion that
+// satisfies [L 2.7], reactions of the holonomic and of the nonholonomic constraints are chosen as the paper allows: any
+// ideal R^H, any R^N with the generalized reactions of [L 2.6]. The forces f_i that are then missing in Newton's law of
+// each particle do no work in any virtual displacement, R^N - f is ideal again, and with it Newton's law holds for each
+// particle.
 //
-// Reactions on particles are of random systems with g = 3N - n > 0 holonomic constraints in their coordinates, and with
-// g = 0.
+// Reactions act on the particles of random systems, with g = 3N - n > 0 holonomic constraints in their coordinates or
+// with g = 0.
 #include <gtest/gtest.h>
 
 #include "model/loads.h"
@@ -17,7 +18,7 @@
 namespace anholon::sufficiency_test {
 namespace {
 
-constexpr double kExact = 1e-26;   // 40 digits, a few systems of equations after each other
+constexpr double kExact = 1e-26;   // 40 digits, less those that a few systems of equations in turn lose
 constexpr double kRefuted = 1e-6;  // a mutant misses by much more
 
 using Vectors = std::vector<Multi>;  // three components for each particle
@@ -49,7 +50,7 @@ struct Particles {
   std::size_t n() const { return m.q.size(); }
 };
 
-// What the theorem speaks of, at one point.
+// The quantities of the theorem at one point.
 struct State {
   const Particles& p;
   test::Point at;
@@ -68,7 +69,7 @@ struct State {
     law = test::values(p.law, at);
     N = test::values(put_masses(*p.model, p.m.N), at);
   }
-  // Anything.
+  // Random components.
   Vectors any(std::size_t size) {
     Vectors out;
     const test::Point random(++draws);
@@ -88,7 +89,7 @@ struct State {
     const Vectors delta = test::in_kernel(phi, any(p.n()));
     return test::times(test::transposed(by_q), delta);
   }
-  // In units of what is multiplied.
+  // |forces . displacement| in units of both.
   double work(const Vectors& forces, const Vectors& displacement) const {
     return std::abs(to_double(test::product(forces, displacement))) / (1 + test::largest(forces)) /
            (1e-3 + test::largest(displacement));
@@ -132,11 +133,11 @@ TEST_P(Sufficiency, WhatNewtonsLawMissesDoesNoWork) {
     EXPECT_LE(s.generalized(f), kExact);
     EXPECT_LE(s.work(f, s.displacement()), kExact);
     if (!holonomic()) {
-      EXPECT_LE(test::largest(f), kExact * test::largest(s.law));  // g = 0: there is nothing to miss
+      EXPECT_LE(test::largest(f), kExact * test::largest(s.law));  // g = 0: nothing is missing
     } else {
       EXPECT_GT(test::largest(f), kRefuted);
     }
-    // Mutants: a reaction that is not that of Routh's equations, and a motion that is not theirs.
+    // Mutants: another reaction than that of Routh's equations, and a motion that does not satisfy them.
     Vectors other = s.N;
     for (Multi& x : other) x *= Multi(2);
     EXPECT_GT(s.generalized(test::plus(test::plus(s.law, s.ideal_holonomic()), s.with_generalized(other))), kRefuted);
@@ -159,7 +160,7 @@ TEST_P(Sufficiency, TheReactionsLessThatAreIdealAgain) {
       EXPECT_LE(s.work(R_N, delta), kExact);
       EXPECT_LE(s.work(R, delta), kExact);
     }
-    // Mutants: a defect that is not ideal, and a displacement that the constraints do not allow.
+    // Mutants: missing forces that are not ideal, and a displacement that the constraints do not allow.
     const Vectors not_ideal = test::plus(f, s.any(f.size())),
                   free = test::times(test::transposed(s.by_q), s.any(s.p.n()));
     EXPECT_GT(s.work(test::plus(R_N, not_ideal, -1), s.displacement()), kRefuted);
@@ -178,13 +179,14 @@ TEST_P(Sufficiency, NewtonsLawHoldsForEachParticle) {
     const double size = 1 + test::largest(total);
     EXPECT_LE(test::largest(test::plus(s.law, total)) / size, kExact);
     EXPECT_LE(test::largest(test::plus(total, have, -1)) / size, kExact);
-    // A mutant: the sign of f. Where f vanishes, g = 0, the reactions of twice the law.
+    // A mutant: the sign of f. For g = 0, where f vanishes, it is the reactions of twice the law.
     const Vectors wrong = holonomic() ? test::plus(R_H, test::plus(R_N, f)) : test::plus(total, s.law);
     EXPECT_GT(test::largest(test::plus(wrong, have, -1)) / size, kRefuted);
   }
 }
 
-// Only the sum is unique where g > 0; for g = 0 the reactions of the nonholonomic constraints are.
+// For g > 0 only the sum of the reactions is unique; for g = 0 the reactions of the nonholonomic constraints are
+// unique, too.
 TEST_P(Sufficiency, OnlyTheTotalReactionIsUnique) {
   for (State& s : states) {
     Vectors R_N[2], total[2];

@@ -2,9 +2,9 @@
 //
 //   sum_i (F_i - m_i a_i) . delta r_i^(m) = 0,   delta r_i = … = delta r_i^(m-1) = delta t = 0
 //
-// with delta q^(m) in the kernel of dphi/dq^(m). delta r^(m) is taken by differences of r^(m), which is a function of
-// all jets. F holds the reactive forces and those of the moving observer. And what becomes of the reduced equations
-// where [N 5.2] is put in [N 5.3].
+// with delta q^(m) in the kernel of dphi/dq^(m). delta r^(m) is computed by differences of r^(m), which is a function
+// of all jets. F holds the reactive forces and those of the moving observer. The last part puts [N 5.2] into the
+// reduced equations [N 5.3].
 #include <gtest/gtest.h>
 
 #include "support/identity.h"
@@ -15,7 +15,7 @@
 namespace anholon::universal_principle_test {
 namespace {
 
-constexpr double kDifferences = 1e-24;  // step 1e-15, its square is the error
+constexpr double kDifferences = 1e-24;  // the error of a step of 1e-15 is its square
 constexpr double kExact = 1e-26;
 constexpr double kRefuted = 1e-6;
 
@@ -33,14 +33,14 @@ class UniversalPrinciple : public testing::TestWithParam<Choice> {
   std::shared_ptr<const Model> model;
   Mechanics mech;
   Column places, places_m, miss;  // r, r^(m), F - m a
-  Column phi_m;                   // lifted to m
+  Column phi_m;                   // phi lifted to m
   std::vector<test::Point> points;
 
   void SetUp() override {
     const test::ParticleSystem system({4, 2, order, 2, order % 2 == 1}, 100 + order);
     model = test::model_of(system.text());
     mech = mechanics(*model);
-    // By Newton's law, F - m a is minus the reaction on the particle.
+    // By Newton's law, F - m a is the negative reaction on the particle.
     for (const Load& load : reactions(*model))
       for (int c = 0; c < 3; ++c) miss.push_back(-load.force[c]);
     for (const Body& b : model->bodies)
@@ -53,7 +53,7 @@ class UniversalPrinciple : public testing::TestWithParam<Choice> {
     ASSERT_EQ(points.size(), 2U) << system.text();
   }
 
-  // delta q^(m) that the constraints allow, or any.
+  // A delta q^(m) that the constraints allow or, unless `allowed`, any.
   Vectors displacement(const test::Point& at, std::uint64_t seed, bool allowed = true) const {
     Vectors any;
     for (std::size_t a = 0; a < mech.q.size(); ++a)
@@ -63,7 +63,7 @@ class UniversalPrinciple : public testing::TestWithParam<Choice> {
     return allowed ? test::in_kernel(test::values_of(rows, at), any) : any;
   }
 
-  // The variation of es where q^(k) is varied by delta alone.
+  // The variation of es if q^(k) alone is varied, by delta.
   Vectors variation(const Column& es, const test::Point& at, unsigned k, const Vectors& delta) const {
     const Multi h = test::raise(Multi(10), Rational(-15));
     test::Point more = at, less = at;
@@ -119,7 +119,7 @@ TEST_P(PrincipleOfGauss, SaysThatTheCompulsionIsStationary) {
   }
 }
 
-// [N 5.2] on a motion: with the given forces in the place of E it misses the reactions of each coordinate.
+// [N 5.2] on a motion, with the given forces in place of E: the reactions of each coordinate are missing.
 class RelationOnAMotion : public UniversalPrinciple {};  // m >= 1
 TEST_P(RelationOnAMotion, TheForcesDoNotReplaceTheInertiaCoordinateByCoordinate) {
   const auto put = [&](const Column& c) { return put_masses(*model, c); };
@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(Order, RelationOnAMotion, of_higher_order, case_name);
 
 class PutIntoTheReducedEquations : public testing::TestWithParam<unsigned> {
  protected:
-  // The left side of [N 5.3]: [N 3.16] with dT/dq as [N 5.2] has it, X in the place of E.
+  // The left side of [N 5.3]: [N 3.16] with dT/dq from [N 5.2], in which X stands for E.
   static test::Terms left(const test::System& s, const Elimination& e, const Column& X) {
     const Rational part = Rational(static_cast<int>(e.m) - 1) / Rational(static_cast<int>(e.m));
     const Expr before = T(s.m, e.m - 1);
@@ -176,12 +176,12 @@ TEST_P(PutIntoTheReducedEquations, SaysTheSameWithTheForcesContracted) {  // [N 
     const test::System& s = *test::generic(m, shape);
     const Elimination e = elimination_for(s.m, Unknowns::coordinates, {}, {}, shape == test::Shape::linear);
     const Column reduced = find_formulation("micevic-rusov-reduced")->equations(s.m, e).left, G = forces(s.m);
-    // With E it is the left side of [N 3.16] itself.
+    // With E for X it is the left side of [N 3.16] itself.
     test::Terms with_E = left(s, e, lagrange_operator(s.m));
     with_E.push_back(-reduced);
     EXPECT_LE(test::miss(s, e, with_E), kExact);
-    // With the forces it is an equation of motion: a m-th part of [N 3.16], and m times it are the generalized Nielsen
-    // equations.
+    // With the forces for X it is an equation of motion: an m-th part of [N 3.16]; m times it are the generalized
+    // Nielsen equations.
     test::Terms with_G = left(s, e, G);
     with_G.push_back(-e.contract(G));
     test::Terms part = with_G, nielsen = with_G;
@@ -190,7 +190,7 @@ TEST_P(PutIntoTheReducedEquations, SaysTheSameWithTheForcesContracted) {  // [N 
     for (Column& c : nielsen) c = Rational(m) * c;
     nielsen.push_back(-residual("nielsen-reduced", s, e));
     EXPECT_LE(test::miss(s, e, nielsen), kExact);
-    // Mutants: the forces taken for the inertia as an identity; the factor of [N 5.2].
+    // Mutants: the forces equal the inertia identically; another factor of [N 5.2].
     test::Terms not_equal = left(s, e, G);
     not_equal.push_back(-reduced);
     if (m > 1) {

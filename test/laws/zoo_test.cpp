@@ -1,4 +1,4 @@
-// Models of the zoo against numbers from elsewhere: closed solutions, and equations reduced by hand and integrated
+// Models of the zoo are compared with closed solutions, and with equations that are reduced by hand and integrated
 // here.
 #include <array>
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace anholon::zoo_test {
 namespace {
 
-constexpr double kAgreement = 1e-9;  // of motions at tolerance 1e-13 and of 20 000 steps of Runge and Kutta
+constexpr double kAgreement = 1e-9;  // motions at tolerance 1e-13 against 20 000 Runge-Kutta steps
 
 std::map<std::string, double> end_of(const std::string& text, int to) {
   Scenario s;
@@ -94,7 +94,7 @@ TEST(Zoo, TheRollerRacerFollowsItsReducedEquation) {
   EXPECT_GT(miss(reduced(0.151)), 1e-4) << "mutant: a longer handlebar";
 }
 
-// Straight ahead: Lagrange's equations of the cart and the pendulum, the wheels as mass on the cart.
+// Straight ahead: Lagrange's equations of the cart and the pendulum, where the wheels add mass to the cart.
 TEST(Zoo, TheTwoWheeledPendulumIsAPendulumOnACart) {
   const double pi = std::acos(-1.0);
   const auto reduced = [&](double wheel) {
@@ -120,8 +120,8 @@ TEST(Zoo, TheTwoWheeledPendulumIsAPendulumOnACart) {
   EXPECT_NEAR(end.at("psi"), 0, 1e-14);
 }
 
-// Kane's equations of the speeds V along the blade and om, with the accelerations of a point (p, q(t)) of the sleigh
-// V' - om' q - 2 om q' - om^2 p along and om' p + q'' + om V - om^2 q across it.
+// Kane's equations of the speeds V along the blade and om. The accelerations of a point (p, q(t)) of the sleigh are V'
+// - om' q - 2 om q' - om^2 p along the blade and om' p + q'' + om V - om^2 q across it.
 TEST(Zoo, TheSleighWithAMovingMassFollowsItsReducedEquations) {
   const auto reduced = [&](double d) {
     return runge_kutta<5>(
@@ -168,10 +168,11 @@ TEST(Zoo, TheSphericalRobotGoesStraightAsAHoopWithAPendulum) {
   EXPECT_NEAR(end.at("be"), 0, 1e-12);
 }
 
-// Seen from rest the ball goes round with 2/7 W, as fast as it was thrown: zeta = x + i y, zeta'' = i 2/7 W zeta'.
+// Seen from rest the ball goes round in a circle with 2/7 W, at its initial speed: zeta = x + i y, zeta'' = i 2/7 W
+// zeta'.
 TEST(Zoo, TheBallOnATurntableGoesRoundInACircle) {
   using C = std::complex<double>;
-  // The rolling: v = W ez x r + R om x ez, om of the Euler rates at ps = 0.
+  // Rolling gives v = W ez x r + R om x ez, with om from the Euler rates at ps = 0.
   const double th1 = 0.5, ph1 = -2, th = 1.2, R = 0.25;
   const C start(0.5, -0.2), om(th1, -ph1 * std::sin(th)), v = C(0, 3) * start - C(0, R) * om;
   const auto at = [&](double turn) { return start + v * (std::exp(C(0, turn * 2)) - 1.0) / C(0, turn); };
@@ -179,14 +180,14 @@ TEST(Zoo, TheBallOnATurntableGoesRoundInACircle) {
   const C there(end.at("x"), end.at("y"));
   EXPECT_LT(std::abs(there - at(2.0 / 7 * 3)), kAgreement);
   EXPECT_GT(std::abs(there - at(2.0 / 5 * 3)), 0.1) << "mutant: a hollow ball";
-  // From the table it is where the table has turned it to.
+  // Seen from the table, the ball has the place to which the table has turned it.
   const std::map<std::string, double> seen = end_of(test::shipped_text("zoo/ball-on-turntable-rotating"), 2);
   EXPECT_LT(std::abs(C(seen.at("x"), seen.at("y")) * std::exp(C(0, 6)) - there), kAgreement);
 }
 
 struct Orbit {
   double mu = 3.986004418e14, R = 6778e3, n = std::sqrt(mu / (R * R * R));
-  // What turns a tether of length l: l angle'' + 2 l' (angle' + n) = this.
+  // Right side of the law across a tether of length l: l angle'' + 2 l' (angle' + n) = across(l, angle).
   double across(double l, double angle) const {
     const double r2 = R * R + 2 * R * l * std::cos(angle) + l * l;
     return R * std::sin(angle) * (mu / (r2 * std::sqrt(r2)) - n * n);
@@ -211,7 +212,7 @@ TEST(Zoo, TheTetherTurnsByItsEquationAndHangsStill) {
       << "the angle at which a short one hangs";
 }
 
-// The angle held, the law across says how the tether grows; the law along, what the reel has to do.
+// The angle is held: the law across the tether gives its growth, the law along it the force of the reel.
 TEST(Zoo, TheTetherKeptAtAnAngleGrowsAsItsServoWants) {
   const Orbit o;
   const double angle = -10 * std::acos(-1.0) / 180;

@@ -33,7 +33,7 @@ double number(const StateReport::Named& list, const std::string& name) {
   throw std::runtime_error("the report has no " + name);
 }
 
-// What the constraints make of lean, steer and their rates.
+// The values that the constraints give for this lean, this steer and their rates.
 const std::pair<const char*, double> kVelocities[] = {
     {"psi", -0.7830033527065}, {"pitch", 0.0119185528069}, {"front", -8.0133620584155}};
 const std::pair<const char*, double> kAccelerations[] = {{"psi''", -0.8353281706379},   {"phi''", 7.8555281128244},
@@ -56,7 +56,7 @@ TEST(Bicycle, BasuMandalsAccelerations) {
     EXPECT_NEAR(number(r.derivatives, name), value, 3 * kPrinted * std::max(1.0, std::abs(value))) << name;
 }
 
-// The centre of the rear wheel, whose acceleration the table gives in its axes.
+// The centre of the rear wheel: the table gives its acceleration in its axes.
 TEST(Bicycle, BasuMandalsRearWheel) {
   const auto model = shipped("zoo/whipple");
   const StateChoice choice = table_1(*model);
@@ -79,7 +79,7 @@ TEST(Bicycle, BasuMandalsRearWheel) {
   EXPECT_NEAR(static_cast<double>(out[2]), 1.4604528332980, 3 * kPrinted);
 }
 
-// The mutant: a front wheel of which a tenth of a gram is missing.
+// The mutant: the mass of the front wheel lacks a tenth of a gram.
 TEST(Bicycle, AnotherMassIsSeen) {
   const auto model = model_of(replaced(shipped_text("zoo/whipple"), "mF = 3", "mF = 2.9999"));
   const StateChoice choice = table_1(*model);

@@ -21,13 +21,13 @@ from concurrent.futures import ThreadPoolExecutor
 from decimal import Decimal, getcontext
 from pathlib import Path
 
-os.environ.setdefault("ANHOLON_CACHE", "")  # nothing is kept in the user's home
+os.environ.setdefault("ANHOLON_CACHE", "")  # no compiled code is kept in the home folder
 
 HERE = Path(__file__).resolve().parent
 FORCES = ["Q", "QR", "Qomega", "minus_dVO", "minus_dVomega", "Gamma", "inertia_term", "N"]
 ENERGIES = ["T_r", "S_r", "V_O", "V_omega", "h"]
 POWERS = ["power_noncons", "power_constraint", "dh_dt"]
-# Largest error allowed, in units of the scale that belongs to the quantity.
+# Largest error allowed, in units of the scale of the quantity.
 EVALUATE_TOLERANCE = Decimal("1e-13")
 SIMULATE_TOLERANCE = Decimal("1e-12")
 DIGITS_TOLERANCE = Decimal("1e-25")
@@ -36,7 +36,7 @@ UNSTABLE = {"s07_rattleback": Decimal("1e-9")}  # errors grow fast along this tr
 
 
 class Worst:
-    """The largest of many errors, each against its own scale, and where it was."""
+    """The largest of many errors, each in units of its own scale, and its place."""
 
     def __init__(self):
         self.error = Decimal(0)
@@ -59,7 +59,7 @@ class Failure(Exception):
 
 
 def ask(program, arguments):
-    """Run the program; its JSON with every number as an exact decimal."""
+    """Runs the program. Returns its JSON with every number as an exact decimal."""
     done = subprocess.run([program, *arguments], capture_output=True, text=True, timeout=600)
     if done.returncode != 0:
         message = (done.stderr.strip() or done.stdout.strip() or "no message").splitlines()
@@ -82,7 +82,7 @@ def jet_name(symbol, coordinates):
 
 
 def body_names(model):
-    """Names of everything with a mass or an inertia, in the order of the file."""
+    """The names of all elements with a mass or an inertia, in the order of the file."""
     elements = [e for section in model if section in ("body", "particle") for e in model[section]]
     return [e["name"] for e in elements if "mass" in e or "inertia" in e]
 
@@ -146,7 +146,7 @@ def compare_state(worst, answer, reference, model, coordinates, where):
 def evaluate(program, path, model, data, digits, form):
     worst = Worst()
     coordinates = data["coords"]
-    answer = ask(program, ["evaluate", str(path), "--json"])  # for the names of the multipliers
+    answer = ask(program, ["evaluate", str(path), "--json"])  # gives the names of the multipliers
     for index, reference in enumerate(data["states"]):
         state = reference["state"]
         arguments = ["evaluate", str(path), "--json", "--form", form, "--t", reference["t"]]

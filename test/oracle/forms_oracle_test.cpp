@@ -1,8 +1,8 @@
-// Every form at every stored state of every reference system. The stored coordinates, derivatives, accelerations and
-// multipliers are put into its equations; what the state does not say of higher derivatives is pseudo-random where it
-// is free and follows from the constraints where it is not. Each system at the order of its constraints and with its
-// constraints differentiated: their reactions are the same. With the constraints solved where that is possible, and
-// not. In 50 digits and in double.
+// Every form holds at every stored state of every reference system. The stored coordinates, derivatives, accelerations
+// and multipliers are put into its equations; higher derivatives that are not stored are pseudo-random if they are
+// free, else they follow from the constraints. Each system is used at the order of its constraints and with its
+// constraints differentiated, which leaves their reactions the same; with the constraints solved if that is possible,
+// and not solved; in 50 digits and in double.
 #include <cstdlib>
 #include <set>
 
@@ -84,8 +84,9 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
     return out;
   }
 
-  // A stored state: first on the constraints, then on the equations of motion, by small corrections; beyond what is
-  // stored the independent derivatives are pseudo-random, up to order `highest`.
+  // The point of a stored state, corrected slightly until first the constraints and then the equations of motion hold.
+  // Independent derivatives that are not stored are pseudo-random, up to order `highest`. Throws if a stored value
+  // would change by more than 1e-26.
   test::Point point(const json& stored, const std::vector<std::size_t>& D, unsigned highest) const {
     Graph& g = m.graph();
     test::Point at = test::random_point(*model, 1);
@@ -138,10 +139,10 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
     return c;
   }
 
-  // One form to be evaluated: its residual, what it is made of (the summands of its sides), and their program.
+  // One form to be evaluated: its residual, the summands of its sides, and their program.
   struct Prepared {
     Column residual, parts;
-    std::vector<std::size_t> first;  // of the parts of equation i
+    std::vector<std::size_t> first;  // index of the first part of equation i
     Tape tape;
   };
   static Prepared prepare(const Model& of, const Elimination& e, const Equations& q) {
@@ -195,7 +196,7 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
   static double to_double(double x) { return x; }
 
   Elimination eliminate(const Mechanics& of, Unknowns unknowns, bool solved) const {
-    // The reference's dependent coordinates, unless they are no good at the start.
+    // Takes the reference's dependent coordinates, unless they are unsuitable at the start.
     try {
       return elimination_for(of, unknowns, {}, dependent(), solved);
     } catch (const Failure&) {
@@ -207,8 +208,9 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
     return std::all_of(of.order.begin(), of.order.end(), [](int r) { return r == 0; });
   }
 
-  // All forms that apply, with the constraints differentiated so often. Of those that solve for the accelerations
-  // nothing new comes by that; the other mechanics has these reactions only where the constraints are holonomic.
+  // Evaluates all forms that apply, with the constraints differentiated `times` times. Udwadia-Kalaba, which solves for
+  // the accelerations, is evaluated for times = 0 only, since differentiation adds nothing new to it; variational
+  // mechanics has these reactions only if the constraints are holonomic.
   void judge(unsigned times, bool solved, Worst& multi, Worst& real,
              const std::function<Equations(const Formulation&, Equations)>& mutant = {}) {
     const std::shared_ptr<const Model> at_order = lifted(model, times);
@@ -236,7 +238,7 @@ class FormsOracle : public testing::TestWithParam<test::OraclePair> {
 
 class FormsOracleAtOrder : public FormsOracle {
  protected:
-  // The order of the equations: that of the constraints, 1 at least.
+  // The order of the equations is that of the constraints, at least 1.
   unsigned native() const { return m.order.empty() ? 1U : static_cast<unsigned>(std::max(1, m.order[0])); }
   void expect_at(unsigned order, bool solved) {
     const unsigned times = order == native() || m.order.empty() ? 0U : order - static_cast<unsigned>(m.order[0]);
@@ -253,7 +255,7 @@ TEST_P(FormsOracleAtOrder, OfTheConstraints) { expect_at(native(), true); }
 INSTANTIATE_TEST_SUITE_P(Model, FormsOracleAtOrder, testing::ValuesIn(test::oracle_pairs()),
                          [](const auto& p) { return test::test_name(p.param.model); });
 
-// The systems that have constraints, of an order of at most `highest`.
+// The systems whose constraints have at most the order `highest`; systems without constraints are left out.
 std::vector<test::OraclePair> with_constraints(int highest) {
   std::vector<test::OraclePair> pairs;
   for (const test::OraclePair& p : test::oracle_pairs()) {
@@ -272,7 +274,8 @@ TEST_P(FormsOracleOneHigher, Holds) { expect_at(native() + 1, false); }
 INSTANTIATE_TEST_SUITE_P(Model, FormsOracleOneHigher, testing::ValuesIn(with_constraints(99)),
                          [](const auto& p) { return test::test_name(p.param.model); });
 
-// Order 2 was lifted to 3 above. With ANHOLON_LONG=1 all systems, else some that are quick.
+// The systems whose constraints have at most order 1, to be lifted to order 3 (FormsOracleOneHigher lifts those of
+// order 2): all if ANHOLON_LONG is set, else some quick ones.
 std::vector<test::OraclePair> lifted_to_three() {
   const std::set<std::string> quick = {
       "zoo/chaplygin-sleigh", "zoo/rheonomic-order-1", "zoo/double-pendulum-cartesian", "zoo/appell-hamel",
@@ -290,7 +293,7 @@ TEST_P(FormsOracleAtThree, Holds) { expect_at(3, true); }
 INSTANTIATE_TEST_SUITE_P(Model, FormsOracleAtThree, testing::ValuesIn(lifted_to_three()),
                          [](const auto& p) { return test::test_name(p.param.model); });
 
-// Mutants: an equation that is not the form's; a system that is not the stored one.
+// Mutants: an equation that differs from the form's, and a system that differs from the stored one.
 class FormsOracleMutant : public FormsOracle {};
 
 TEST_P(FormsOracleMutant, IsRefuted) {

@@ -1,5 +1,6 @@
-// Every shipped model with a line `# oracle: NAME` against data/NAME.json: each term at each stored state, each sample
-// of the stored trajectory. The numbers there were computed by other methods in 230-bit arithmetic (data/README.md).
+// Every shipped model with a line `# oracle: NAME` is compared with data/NAME.json: each term at each stored state,
+// each sample of the stored trajectory. Other methods computed the stored numbers, in 230-bit arithmetic
+// (data/README.md).
 #include <map>
 
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ const char* const kUnstableSystem = "s07_rattleback";
 
 using Pair = test::OraclePair;
 
-// The largest of many errors, each against its own scale, and where it was.
+// The largest of many errors, each in units of its own scale, and its place.
 class Worst {
  public:
   void compare(const std::string& value, const std::string& reference, double scale, const std::string& where) {
@@ -218,7 +219,7 @@ TEST_P(UnstableOracle, TrajectoryInLongDouble) {
 INSTANTIATE_TEST_SUITE_P(Model, UnstableOracle, testing::Values(Pair{"zoo/rattleback", kUnstableSystem}),
                          [](const auto& p) { return test::test_name(p.param.model); });
 
-// Other methods: errors of steps add up, and accelerations follow the state.
+// Other methods: the errors of their steps add up, and accelerations follow the state.
 class OracleByMethod : public Oracle {};
 TEST_P(OracleByMethod, Trajectory) {
   for (const double tolerance : {1e-6, 1e-9}) {

@@ -1,6 +1,6 @@
-// Forces, energies, powers, reactions and equations of every paired model at the stored states,
-// with the stored leading derivatives and multipliers put in: nothing is solved, so constraints of
-// every order are judged. Values by the reference evaluator, 40 digits.
+// Forces, energies, powers, reactions and equations of every paired model at the stored states, with the stored leading
+// derivatives and multipliers put in. Nothing is solved, so constraints of every order can be judged. The reference
+// evaluator computes the values with 40 digits.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -51,7 +51,7 @@ class OracleTerms : public testing::TestWithParam<test::OraclePair> {
     return p;
   }
 
-  // The largest error, in units of `scale` or 1, and what has it.
+  // The largest error, in units of `scale` or 1, and the name of its quantity.
   struct Worst {
     double error = 0;
     std::string what;

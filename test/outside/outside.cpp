@@ -1,4 +1,4 @@
-// Uses every part of the installed library, and prints what comes out of it.
+// Uses every part of the installed library and prints the results.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -94,7 +94,7 @@ void motion(const anholon::System& system) {
   beyond.at.clear();
   expect(bool(anholon::simulate(system, beyond)), "an end alone is not");
 
-  // Two threads use one system, and get the bits of one.
+  // Two threads that use one system get the bits of one thread.
   std::vector<double> first, second;
   const auto go = [&system](std::vector<double>& to) {
     const auto r = anholon::simulate(system);
@@ -148,7 +148,7 @@ void sweep(const anholon::System& system) {
   expect(other && other->varied("m")[0] != drawn->varied("m")[0], "another seed draws other values");
 }
 
-// Scenarios of a model that vary: the same numbers as those of each scenario alone, in memory and in a folder.
+// A sweep over scenarios of a model has the numbers of each scenario alone, in memory and in a folder.
 void sweep_over_scenarios() {
   const std::string text = std::string(kPendulum) + "[case.long]\nparameters.l = 4\n[case.late]\nsimulate.to = 3\n";
   const auto model = anholon::read_text(text);

@@ -1,4 +1,5 @@
-// Pages of real models, opened in a browser from disk: node pages.mjs PROGRAM. Exit 77: there is no browser, or no viewer.
+// Opens pages of real models in a browser from disk: node pages.mjs PROGRAM. Exit status 77: there is no browser, or no
+// viewer.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -21,7 +22,7 @@ const browser = await chromium.launch({
   args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking', '--disable-component-update'],
 });
 
-// Opens a page that must not complain, ask for anything, or be wider than the window.
+// Opens a page, which must give no error or warning, make no request, and be no wider than the window.
 async function open(path, width) {
   const page = await browser.newPage({ viewport: { width, height: 900 } });
   const faults = [];
@@ -39,7 +40,7 @@ async function open(path, width) {
   return { page, faults };
 }
 
-// How far the material point at the contact moves between two frames of a screen; `contact` is the name of a point.
+// The motion of the material point at the contact between two frames of a screen; `contact` is the name of a point.
 async function slip(page, body, contact) {
   return page.evaluate(([b, c]) => {
     const { pose, times } = window.anholon.cases[0];
@@ -91,13 +92,13 @@ for (const model of figures) {
 const rolling = [['rolling-coin', 'coin', 'contact', 0.5], ['ball-on-turntable-rotating', 'ball', 'contact', 0.25], ['disc', 'disc', 'contact', 0.5]];
 for (const [model, body, contact, radius] of some(rolling, 2)) {
   await test(`${model}: rolls in the picture without slipping`, async () => {
-    // Points that the view hides are asked for: the contact is one of them.
+    // The view hides some points that the test needs, such as the contact.
     const text = run('models', model).replace(/^hide .*$/m, '');
     writeFileSync(join(folder, `${model}.toml`), text);
     const { page, faults } = await open(page_of(`slip-${model}`, `${model}.toml`, '--no-proof'), 1000);
     const s = await slip(page, body, contact);
     assert.ok(s < 1e-6 * radius, `slips by ${s}`);
-    // The same question for a point that is not the contact has another answer.
+    // A point that is not the contact does move.
     assert.ok(await slip(page, body, body) > 1e-4 * radius);
     assert.deepEqual(faults, []);
     await page.close();
@@ -116,7 +117,7 @@ simulate = {to = 2.9, every = 0.3}
 await test('what bounces goes through no floor, in rows of the page and in rows of a file', async () => {
   writeFileSync(join(folder, 'ball.toml'), ball);
   run('simulate', 'ball.toml', '-o', 'ball.h5', '--quiet');
-  // The file's rows have two events in their last intervals, where velocities are not known.
+  // The rows of the file have two events in their last intervals, where velocities are unknown.
   for (const [name, limit, ...args] of [['ball', 1e-9, 'ball.toml', '--no-proof'], ['ball-rows', 1e-3, 'ball.h5', '--no-proof']]) {
     const { page, faults } = await open(page_of(name, ...args), 1000);
     const least = await page.evaluate(() => {
@@ -202,7 +203,7 @@ await test('scenarios stand side by side', async () => {
 await test('the modes of a contact are bands under the plots', async () => {
   for (const model of ['stick-slip', 'disc']) {
     const { page, faults } = await open(page_of(`bands-${model}`, model, '--no-proof'), 1200);
-    // The parts of the first plot's lower edge that have the colours of the modes.
+    // The parts of the lower edge of the first plot that have the colours of the modes.
     const colors = await page.evaluate(async () => {
       for (let k = 0; k < 100 && !document.querySelector('.plot canvas'); ++k) await new Promise((f) => setTimeout(f, 50));
       const canvas = document.querySelector('.plot canvas'), over = document.querySelector('.plot .u-over');
@@ -210,7 +211,7 @@ await test('the modes of a contact are bands under the plots', async () => {
       const y = Math.round((o.bottom - box.top - 3) * scale), found = {};
       const line = canvas.getContext('2d').getImageData(Math.round((o.left - box.left) * scale), y, Math.round(o.width * scale), 1).data;
       for (let k = 0; k < line.length; k += 4) if (line[k + 3] === 255) (found[`rgb(${line[k]}, ${line[k + 1]}, ${line[k + 2]})`] ??= []).push(k / 4);
-      // The parts of a dashed band with the gaps between its dashes.
+      // The part of the line that a dashed band covers; gaps of at most `gap` between its dashes count as covered.
       const part = (at, gap) => at.reduce((sum, x, i) => sum + (i > 0 && x - at[i - 1] <= gap ? x - at[i - 1] : 1), 0) / (line.length / 4);
       const style = (name) => { const e = document.createElement('i'); e.style.color = `var(--${name})`; document.body.append(e); const c = getComputedStyle(e).color; e.remove(); return c; };
       const slips = found[style('c1')] ?? [], sticks = found[style('c2')] ?? [], gap = Math.ceil(6 * scale);
@@ -221,7 +222,7 @@ await test('the modes of a contact are bands under the plots', async () => {
       assert.deepEqual([key.length, colors.slips, colors.sticks], [0, 0, 0], 'a model without contacts');
     } else {
       assert.match(key[0], /Contact belt/);
-      // It slips from 0.327 to 1.112, from 1.357 to 2.142 and from 2.387 on, of 3 seconds.
+      // The contact slips from 0.327 to 1.112, from 1.357 to 2.142 and from 2.387 to 3 seconds.
       assert.ok(Math.abs(colors.slips - (0.785 + 0.785 + 0.613) / 3) < 0.02, JSON.stringify(colors));
       assert.ok(Math.abs(colors.sticks - (0.327 + 0.245 + 0.245) / 3) < 0.02, JSON.stringify(colors));
       assert.ok(colors.dashes < 0.7 * colors.slips, 'the two modes differ by more than their colours');

@@ -1,5 +1,6 @@
-// Pages of the site and of a report in Chromium and Firefox, at the width of a desk and of a phone: axe-core finds nothing, nothing scrolls sideways,
-// and no script complains. node accessibility.mjs SITE PROGRAM [--all] | --self-test. Exit 77: there is no browser, or no axe-core.
+// Pages of the site and of a report in Chromium and Firefox, at the width of a desk and of a phone: axe-core finds no
+// fault, nothing scrolls sideways, and no script reports an error. node accessibility.mjs SITE PROGRAM [--all] |
+// --self-test. Exit status 77: there is no browser, or no axe-core.
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -13,7 +14,7 @@ const axe = readFileSync('viewer/node_modules/axe-core/axe.min.js', 'utf8');
 const started = await browsers();
 const folder = mkdtempSync(join(tmpdir(), 'anholon-site-'));
 
-// What is wrong with a page: rule and place, each rule once.
+// The faults of a page with rule and place, each rule once.
 async function faults(browser, file, width, dark) {
   const page = await browser.newPage({ viewport: { width, height: 800 }, colorScheme: dark ? 'dark' : 'light' });
   const found = [];
@@ -30,7 +31,7 @@ async function faults(browser, file, width, dark) {
       found.push(`scrolls sideways: ${across} of ${width}, by ${who}`);
     }
     await page.addScriptTag({ content: axe });
-    // axe-core takes a head of a table in MathML for an empty one.
+    // axe-core takes a MathML heading of a table for an empty one.
     found.push(...await page.evaluate(async () => (await axe.run(document)).violations
       .map((v) => ({ id: v.id, nodes: v.nodes.filter((n) => v.id !== 'empty-table-header' || !n.html.includes('<math')) })).filter((v) => v.nodes.length > 0)
       .map((v) => `${v.id} (${v.nodes.length}): ${v.nodes.slice(0, 2).map((n) => `${n.target.join(' ')} ${n.html.replace(/\s+/g, ' ').slice(0, 110)}`).join(' | ')}`)));

@@ -1,15 +1,16 @@
-// The search of the site finds pages that hold most words of a question, after those that hold all: node search.mjs | --self-test.
+// The search of the site lists pages that hold most words of a question after the pages that hold all of them: node
+// search.mjs | --self-test.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import vm from 'node:vm';
 
 const script = readFileSync('doc/site/static/search.js', 'utf8');
 const pages = {
-  // Names of pages for users begin with doc/, which find leaves out.
+  // Names of pages for users begin with doc/, which is left out here.
   sweeps: { parameter: 5, study: 5, sweep: 15 }, studio: { study: 5, page: 5 }, render: { film: 15, video: 5, page: 5 }, book: { parameter: 5, page: 5, film: 5 }, CHANGELOG: { top: 5 }, zoo: { top: 5 },
 };
 
-// The search of Sphinx in brief: pages that hold all words, with the score of the best word.
+// A model of the search of Sphinx: pages that hold all words, with the score of the best word.
 function search(text) {
   const of_all = (words) => Object.entries(pages).filter(([, held]) => [...words].every((w) => w in held))
     .map(([name, held]) => [name === 'CHANGELOG' ? name : `doc/${name}`, name, '', null, Math.max(...[...words].map((w) => held[w])), `${name}.md`, 'text']);

@@ -1,4 +1,5 @@
-// The page of `anholon studio` in Chromium and Firefox: node page.mjs PROGRAM. Exit 77: there is no browser, or no studio.
+// Tests the page of `anholon studio` in Chromium and Firefox: node page.mjs PROGRAM. Exit status 77: there is no
+// browser, or no studio.
 import assert from 'node:assert/strict';
 import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -20,7 +21,8 @@ async function open({ address, browser }, width = 1280) {
 }
 
 const editor = (page) => page.locator('.cm-content');
-// Replaces a text of the model by another one, as if it was typed at once; returns the time until the new picture is drawn.
+// Replaces a text of the model by another one, as if it was typed at once. Returns the time until the new picture is
+// drawn.
 async function edit(page, from, to) {
   return page.evaluate(async ([a, b]) => {
     const content = document.querySelector('.cm-content'), { view } = content.cmTile ?? content.cmView.rootView ?? content.cmView;
@@ -82,7 +84,7 @@ const tests = {
   },
   async 'completion offers sections, keys, functions and the names of the model'(s) {
     const { page, faults } = await open(s);
-    // Types and waits until the word is among what is offered: a list may open before all is typed.
+    // Types and waits until the word is in the list of completions, which may open before all is typed.
     const offers = async (typed, word) => {
       await editor(page).focus();
       await page.keyboard.press('Control+End');
@@ -113,7 +115,7 @@ const tests = {
     await edit(page, 'title = "', 'title = "Saved: ');
     await editor(page).focus();
     await page.keyboard.press('Control+s');
-    // The status may tell the motion of the edit instead, so the file tells.
+    // The status may report the motion of the edit instead, so the test reads the file.
     for (let k = 0; k < 400 && !readFileSync(file, 'utf8').startsWith('title = "Saved: '); ++k) await page.waitForTimeout(50);
     assert.match(readFileSync(file, 'utf8'), /^title = "Saved: /);
     writeFileSync(file, '# another program\n');
@@ -226,7 +228,7 @@ async function run_tests(browser, browser_name) {
   }
 }
 
-// From an edit to the picture, with a warm program; printed and not judged, for the machine may be busy.
+// Measures the time from an edit to the picture, with a warm program. It is printed only, as the machine may be busy.
 async function measure(browser) {
   for (const [model, name] of [['disc', 'm = 1'], ['whipple', 'v = 5']]) {
     const file = join(folder, `${model}.toml`), text = readFileSync(`models/zoo/${model}.toml`, 'utf8');

@@ -77,7 +77,7 @@ def request(port, path, text=None, headers=(), timeout=90):
 SOCKET = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA=="}
 
 
-# Each returns a list of what is wrong.
+# Each function returns a list of faults.
 
 
 def strangers(port, token):
@@ -129,7 +129,7 @@ def paths(port, token):
 
 
 def sizes(port, token):
-    """A body that is too long is refused, and one without an end, too."""
+    """A body that is too long is refused, and so is one without an end."""
     found = []
     headers = {"Origin": f"http://127.0.0.1:{port}", "X-Anholon-Page": "a", "X-Anholon-Edition": "1"}
     try:
@@ -224,7 +224,7 @@ simulate = {to = 1}
 
 
 def cases(studio):
-    """A case that is chosen is applied to the motion; a name that is none is a message."""
+    """A chosen case is applied to the motion; an unknown name gives a message."""
     found = []
     _, checked = studio.ask("check", CASES)
     if checked.get("cases") != ["stiff", "far away / 100 %"]:
@@ -264,7 +264,7 @@ def contacts(studio):
 
 
 def hostile(studio):
-    """Texts that ask for too much: each has an answer within its time, and the studio works afterwards."""
+    """Texts that need too much: each has an answer within its time, and the studio works afterwards."""
     found = []
     texts = {
         "a motion without an end": ("simulate", MODEL.replace("to = 2", "to = 1e7"), "interrupted"),
@@ -283,7 +283,7 @@ def hostile(studio):
 
 
 def editions(studio):
-    """A newer text ends the computation of an older one; that of another page does not."""
+    """A newer text ends the computation of an older one; a text of another page does not."""
     slow = MODEL.replace("to = 2", "to = 1e7")
     replies = {}
 
@@ -394,7 +394,7 @@ def ignore(f):
 
 
 class Careless(http.server.BaseHTTPRequestHandler):
-    """A server that answers everybody and everything."""
+    """A server that answers every request of everybody."""
 
     def answer(self):
         self.send_response(200)

@@ -1,10 +1,10 @@
-// A studio that runs, and pages that are watched: what the tests of this folder have in common.
+// Functions that the tests of this folder share: a running studio, and pages whose faults are recorded.
 import { spawn } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 
 const axe = readFileSync('viewer/node_modules/axe-core/axe.min.js', 'utf8');
 
-// Starts the studio with this model or sweep; `end` sends SIGINT, and gives the exit status.
+// Starts the studio with this model or sweep; `end` sends SIGINT and returns the exit status.
 export async function studio(program, word, cwd = undefined) {
   const child = spawn(program, ['studio', word, '--no-browser', '--quiet'], { cwd, stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, ANHOLON_CACHE: '' } });
   const address = await new Promise((done, fail) => {
@@ -15,7 +15,8 @@ export async function studio(program, word, cwd = undefined) {
   return { address, end: () => new Promise((done) => { child.removeAllListeners('exit'); child.on('exit', done); child.kill('SIGINT'); }) };
 }
 
-// A page that must not complain and asks nobody but its own address. `draws`: the browser has WebGL; a machine without a screen may have none for Firefox.
+// Opens a page, which must give no error or warning and send requests to its own address only. `draws`: the browser has
+// WebGL; on a machine without a screen, Firefox may have none.
 export async function watched(browser, address, width = 1280) {
   const page = await browser.newPage({ viewport: { width, height: 800 } });
   const faults = [], draws = await page.evaluate(() => document.createElement('canvas').getContext('webgl2') !== null);
@@ -26,7 +27,7 @@ export async function watched(browser, address, width = 1280) {
   return { page, faults, draws };
 }
 
-// How many colours the picture of the player has.
+// The number of colours in the picture of the player.
 export const colour_count = (page) => page.evaluate(() => {
   const canvas = document.querySelector('.player canvas.view');
   if (!canvas || canvas.width === 0) return 0;
@@ -36,8 +37,8 @@ export const colour_count = (page) => page.evaluate(() => {
   return seen.size;
 });
 
-// The faults that axe-core finds, which takes a head of a table in MathML for an empty one. The content policy of the page lets no foreign script in, so it goes through the
-// debugger, which Firefox does not have.
+// The faults that axe-core finds; it takes a MathML heading of a table for an empty one. The content policy of the page
+// lets no foreign script in, so axe-core is run by the debugger, which Firefox does not have.
 export async function accessibility(page) {
   if (page.context().browser().browserType().name() !== 'chromium') return [];
   const session = await page.context().newCDPSession(page);

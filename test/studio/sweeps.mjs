@@ -1,4 +1,5 @@
-// The map of a sweep in Chromium and Firefox, in the studio and in the page of `anholon plot`: node sweeps.mjs PROGRAM. Exit 77: there is no browser, or no viewer.
+// Tests the map of a sweep in Chromium and Firefox, in the studio and in the page of `anholon plot`: node sweeps.mjs
+// PROGRAM. Exit status 77: there is no browser, or no viewer.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, renameSync, rmSync, writeFileSync } from 'node:fs';
@@ -35,7 +36,7 @@ async function open(browser, address, width = 1280) {
 }
 const file = (name) => pathToFileURL(join(folder, name)).href;
 
-// Clicks into the map, at parts of its frame.
+// Clicks into the map at (x, y), in parts of its frame.
 async function click(page, x, y) {
   const canvas = page.locator('.map canvas'), box = await canvas.boundingBox();
   await canvas.click({ position: { x: 64 + (box.width - 76) * x, y: 8 + (box.height - 52) * y } });
@@ -72,7 +73,7 @@ const in_studio = {
     await page.keyboard.press('Enter');
     await shows(page, 17);
     await page.locator('.map canvas').focus();
-    // Six cases stand above each other: the keys go to the neighbours in the picture, and stay at its edge.
+    // Six cases stand above each other: the keys move to the neighbours in the picture, and stop at its edge.
     for (const [key, next] of [['ArrowUp', 17], ['ArrowRight', 23], ['ArrowDown', 22], ['ArrowLeft', 16], ['PageDown', 17], ['PageDown', 18]]) {
       await page.keyboard.press(key);
       await shows(page, next);
@@ -160,7 +161,7 @@ const in_page = {
       const px = (v) => 64 + (clientWidth - 76) * (v - left) / (right - left), py = (v) => 8 + (clientHeight - 52) * (high - v) / (high - low);
       const boxes = Array.from({ length: cells.length / 4 }, (_, k) => [px(cells[4 * k]), py(cells[4 * k + 3]), px(cells[4 * k + 1]), py(cells[4 * k + 2])]);
       const far = ([a, b, c, d], x, y) => Math.hypot(x - (a + c) / 2, y - (b + d) / 2);
-      // A place 9 pixels beside a dot, outside of all dots, and nearer to it than to others.
+      // Finds a place 9 pixels beside a dot, outside of all dots, and nearer to this dot than to others.
       for (const [k, [a, b, c, d]] of boxes.entries()) {
         for (const [dx, dy] of [[0, 9], [9, 0], [0, -9], [-9, 0]]) {
           const x = (a + c) / 2 + dx, y = (b + d) / 2 + dy;

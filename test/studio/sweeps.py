@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The studio and the page of a sweep: the motion of a case has the numbers of the printed command; what is wrong is told.
+"""The studio and the page of a sweep: the motion of a case has the numbers of the printed command; mistakes are reported.
 
 usage: sweeps.py --program PROGRAM | --self-test
 """
@@ -61,7 +61,7 @@ def simulated(program, folder, command, rows):
 
 
 def differs(reply, expected):
-    """The first number of the page that the run does not have; None if it has all.
+    """The first number of the page that the run does not have, or None if it has all.
 
     At an event the page has two rows of one time, its sides, which lie between the rows of the run.
     """
@@ -78,7 +78,7 @@ def differs(reply, expected):
     return None if compared > 500 else f"{compared} numbers were compared"
 
 
-# Folders of sweeps that ask for different things: words, the model of a file, and a case to look at.
+# Folders of different sweeps: words, the model of a file, and cases to look at.
 ASKED = {
     "a grid of initial values": (["m.toml", "--vary", "x=1:2:5", "--vary", "x'=0:1:4", "--to", "2"], MODEL, [0, 7, 19]),
     "a parameter, a method, a tolerance": (["m.toml", "--vary", "k=1,2.5,4", "--to", "3/2", "--method", "rk", "--tolerance", "1e-7", "--set", "m=2"], MODEL, [1, 2]),
@@ -92,11 +92,11 @@ ASKED = {
 }
 
 
-# Each test returns a list of what is wrong.
+# Each test returns a list of faults.
 
 
 def motions(program, folder):
-    """The motion of each case has the numbers of its command, and those of another case are others."""
+    """The motion of each case has the numbers of its command; another case has other numbers."""
     found = []
     for name, (words, text, cases) in ASKED.items():
         at = folder / name.replace("/", "")
@@ -120,14 +120,14 @@ def motions(program, folder):
 
 
 def contact_run(program, folder, reply):
-    """A motion with impacts has further rows, so the interval is that of its rows."""
+    """A motion with impacts has further rows, so the interval is found from its rows."""
     points = shown(reply)[0]["z"]
     interval = min(b[0] - a[0] for a, b in zip(points[:4], points[1:5]))
     return simulated(program, folder, reply["command"], round(1 / interval) + 1)
 
 
 def one_mode(program, folder):
-    """The command of a motion in one mode is one of Python, with the folder and the number of the case."""
+    """The command of a motion in one mode is Python code, with the folder and the number of the case."""
     (folder / "f.toml").write_text(CONTACT)
     sweep(program, folder, "f.toml", "--mode", "floor=open", "--vary", "z=0.5:1:4", "-o", "it's one/", "--chunk", "3")
     with Studio(program, "it's one", cwd=folder) as s:
@@ -138,7 +138,7 @@ def one_mode(program, folder):
 
 
 def mistakes(program, folder):
-    """Numbers that are none, requests of strangers, and folders in which something is missing or changed."""
+    """Requests with wrong numbers, requests of strangers, and folders in which something is missing or changed."""
     found = []
 
     def expect(what, reply, *words):
@@ -199,7 +199,7 @@ def mistakes(program, folder):
 
 
 def held(program, folder):
-    """A page with motions has those of its cases, in single precision; Ctrl-C leaves the file that was there."""
+    """A page with motions has those of its cases, in single precision; Ctrl-C leaves the earlier file."""
     found = []
     (folder / "m.toml").write_text(MODEL)
     sweep(program, folder, "m.toml", "--vary", "x=1:2:9", "--vary", "x'=0:1:5", "--vary", "k=4,5", "-o", "falls/")
@@ -246,7 +246,7 @@ def stopped(program, folder):
 
 
 def strangers(s):
-    """Who has no token, or is another page, gets no motion."""
+    """A request without a token, or from another page, gets no motion."""
     own = {"Origin": f"http://127.0.0.1:{s.port}", "X-Anholon-Page": "a", "X-Anholon-Edition": "1"}
     cases = {
         "a foreign page": (s.token, {**own, "Origin": "http://evil.example"}),
@@ -263,7 +263,7 @@ def strangers(s):
 
 
 def newer(program, folder):
-    """A newer click ends the computation of an older one; a motion that stops early is shown up to there."""
+    """A newer click ends the computation of an older one; a motion that stops early is shown up to its end."""
     found, replies = [], {}
     (folder / "long.toml").write_text(MODEL.replace("to = 2", "to = 1e6"))
     done = run(program, folder, "sweep", "long.toml", "--vary", "x=1,2", "--most-steps", "20", "--quiet", "-o", "short/")
@@ -287,7 +287,7 @@ def newer(program, folder):
 
 
 def self_test():
-    """A page with a number that is not that of the command is found."""
+    """A page with a number that is not the command's is found."""
 
     def reply(value):
         times = [k / 1000 for k in range(600)]

@@ -1,10 +1,10 @@
-// The browsers of this machine in which pages are tested: Chromium, and Firefox by its own protocol WebDriver BiDi.
+// The browsers of this machine in which pages are tested: Chromium, and Firefox by the protocol WebDriver BiDi.
 import { existsSync } from 'node:fs';
 import { resolve } from 'node:path';
 
 const paths = { Chromium: process.env.CHROMIUM ?? '/usr/bin/chromium', Firefox: process.env.FIREFOX ?? '/usr/bin/firefox-esr' };
 
-// Starts each browser that is there, or exits with status 77 if none is. -> [{ name, browser }]
+// Starts each browser that is installed, or exits with status 77 if none is. Returns [{ name, browser }].
 export async function browsers() {
   const skip = (why) => { console.log(`skipped: ${why}`); process.exit(77); };
   if (!Object.values(paths).some(existsSync)) skip(`no ${Object.values(paths).join(' and no ')}`);

@@ -1,4 +1,4 @@
-// Whether kernels can be compiled here: if the module was built, a test that cannot load it fails.
+// True if kernels can be compiled here: if the module was built, a test that cannot load it fails.
 #pragma once
 
 namespace anholon::test {

@@ -7,7 +7,8 @@
 
 namespace anholon::test {
 
-// The motion up to the time `to`, with rows at these times, or at the steps without them. Throws if the model is refused.
+// The motion up to the time `to`, with rows at the times `at`, or at the steps if there are none. Throws if the model
+// is refused.
 inline Motion contact_motion(const std::string& text, const Rational& to, const Overrides& overrides = {},
                              const std::vector<Rational>& at = {},
                              const Rational& tolerance = SimulationOptions().tolerance,

@@ -1,13 +1,13 @@
-// Compares equations without multipliers with Newton's law: both along the tangents of the constraints, which are found
-// numerically, at random free higher derivatives, so that derivatives that must cancel do.
+// Compares equations without multipliers with Newton's law: both are projected on the tangents of the constraints,
+// which are found numerically. Free higher derivatives are random, so derivatives that must cancel do.
 #pragma once
 #include "formulation/formulation.h"
 #include "support/manifold.h"
 
 namespace anholon::test {
 
-// |residual - B^T (E - G)| in units of the terms, the largest of `points` points, huge if no point is found; for n
-// equations without multipliers |B^T residual - …|.
+// |B^T residual - B^T (E - G)| in units of the largest term, or |residual - B^T (E - G)| if there are as many equations
+// as columns of B. Returns the largest of `points` points, or 1e300 if no point is found.
 inline double miss_along_constraints(const Mechanics& M, const Elimination& e, const Column& residual, int points) {
   const PrecisionScope precision(40);
   const Model& model = *M.model;

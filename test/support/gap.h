@@ -1,4 +1,4 @@
-// How far two lists of numbers are apart.
+// The distance of two lists of numbers.
 #pragma once
 #include <algorithm>
 #include <cmath>

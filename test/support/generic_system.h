@@ -1,6 +1,6 @@
-// A small system with everything that occurs in the equations of order m: moving guides, a varying mass, two
+// A small system in which everything occurs that equations of order m can contain: moving guides, a varying mass, two
 // constraints whose right sides contain time, lower derivatives of dependent coordinates, and powers of the independent
-// highest derivatives. It has polynomials only, so that identities can be proved by exact algebra.
+// highest derivatives. It has polynomials only, so identities can be proved by exact algebra.
 #pragma once
 #include <string>
 
@@ -13,7 +13,7 @@ inline std::string primes(const std::string& name, int order) {
 enum class Shape {
   affine,     // in all highest derivatives: quasi-velocities can be solved too
   linear,     // in the dependent highest derivatives: the constraints can be solved
-  nonlinear,  // in the dependent ones as well: the constraints cannot be solved
+  nonlinear,  // in the dependent highest derivatives as well: the constraints cannot be solved
 };
 
 // The quasi-velocities beside the two constraints.

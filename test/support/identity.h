@@ -1,5 +1,5 @@
-// Identities at points: systems with everything that occurs in the equations of order m, and the residual of a sum of
-// terms there, at arbitrary jets or on the manifold of the constraints.
+// Identities at points: systems in which everything occurs that equations of order m can contain, and the residual of a
+// sum of terms at a point, at arbitrary jets or on the manifold of the constraints.
 #pragma once
 #include <map>
 

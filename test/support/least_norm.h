@@ -1,4 +1,4 @@
-// Vectors and matrices of a few numbers: solutions of least norm, and parts of vectors in the kernel.
+// Small vectors and matrices: solutions of least norm, and the parts of vectors in a kernel.
 #pragma once
 #include "numeric/linear.h"
 #include "numeric/number.h"

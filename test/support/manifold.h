@@ -1,6 +1,6 @@
-// Points on the manifold of the constraints: all free symbols are pseudo-random, the dependent highest derivatives are
-// found by Newton's method on the (lifted) constraints themselves, the next ones from their derivative. Of an
-// Elimination only the list of coordinates is used.
+// Points on the manifold of the constraints. All free symbols are pseudo-random; Newton's method on the (lifted)
+// constraints themselves finds the dependent highest derivatives, and on the derivative of the constraints those of the
+// next order. Of an Elimination only the list of coordinates is used.
 #pragma once
 #include <optional>
 

@@ -12,7 +12,7 @@ inline Point random_point(const Model& model, std::uint64_t seed) {
   return Point(seed).set_parameters(evaluate_parameters<Multi>(*model.graph, es));
 }
 
-// The point at a time tau later on a smooth path through `start`: every jet is the derivative of the one below it, as
+// The point at a time tau later on a smooth path through `start`. Every jet is the derivative of the one below it, as
 // in a motion whose derivatives from order `highest` + 1 on are zero.
 inline Point moved(const Model& model, const Point& start, const Multi& tau, unsigned highest) {
   Graph& g = *model.graph;

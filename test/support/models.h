@@ -1,4 +1,4 @@
-// Models for tests: the shipped files, and texts.
+// Models for tests, from shipped files and from texts.
 #pragma once
 #include <algorithm>
 #include <filesystem>
@@ -21,9 +21,9 @@ inline std::string file_text(const std::filesystem::path& path) {
 
 inline std::filesystem::path source_dir() { return ANHOLON_SOURCE_DIR; }
 
-// "zoo/rocket" for models/zoo/rocket.toml, sorted. Templates of new models are not included (tools/reference.py runs
-// them), nor are models with contacts, whose motions are not those of their equations (tools/readme.py runs them in
-// doc/contact.md).
+// The names of the shipped models, sorted, such as "zoo/rocket" for models/zoo/rocket.toml. Templates of new models are
+// left out (tools/reference.py runs them), and so are models with contacts, whose motions do not follow from their
+// equations alone (tools/readme.py runs them in doc/contact.md).
 inline std::vector<std::string> shipped_models() {
   std::vector<std::string> names;
   const std::filesystem::path folder = source_dir() / "models";
@@ -47,7 +47,7 @@ inline std::string shipped_text(const std::string& name) {
   return file_text(source_dir() / "models" / (name + ".toml"));
 }
 
-// The model, or a test failure with the reader's messages.
+// The model. Throws the reader's messages if the text is refused, so that the test fails.
 inline std::shared_ptr<const Model> model_of(const std::string& text, const Overrides& overrides = {}) {
   const SourceText source{"test.toml", text};
   Diagnostics diagnostics;
@@ -64,7 +64,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-// A model name as part of a test name.
+// Makes a part of a test name from a model name.
 inline std::string test_name(std::string name) {
   std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
   return name;

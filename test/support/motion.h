@@ -24,8 +24,7 @@ struct Motion {
   double last(const std::string& column) const { return number(rows.rows().size() - 1, column); }
 };
 
-// A saved run without the counts of its rows and of the times at which monitors were seen, which the end of the first part
-// increases.
+// A saved run without the counts of its rows and of the times of monitors, which the end of the first part increases.
 inline std::string of_the_motion(const std::string& saved) {
   std::istringstream lines(saved);
   std::string kept;

@@ -1,13 +1,13 @@
-// Points of a motion: the constraints hold with those of their derivatives that contain accelerations or derivatives of
-// their own order, and Routh's equations [L 2.7] hold. All other values are pseudo-random: those that may be prescribed
-// at a start, and derivatives that follow only from derivatives of the equations of motion.
+// Points of a motion. Routh's equations [L 2.7] hold, and so do the constraints and those of their derivatives that
+// contain accelerations or derivatives of the constraint's own order. All other values are pseudo-random: those that
+// may be prescribed at a start, and derivatives that follow only from derivatives of the equations of motion.
 #pragma once
 #include "formulation/formulation.h"
 #include "support/manifold.h"
 
 namespace anholon::test {
 
-// For constraints of one order, as many as `dependent` coordinates; lifted to order m if m is higher.
+// Needs constraints of one order, as many as `dependent` has coordinates. They are lifted to order m if m is higher.
 inline std::optional<Point> motion_point(const Mechanics& M, const std::vector<std::size_t>& dependent, unsigned m,
                                          std::uint64_t seed) {
   const Model& model = *M.model;

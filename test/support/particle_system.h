@@ -1,7 +1,7 @@
-// Random systems of particles whose positions are functions of fewer coordinates, g = 3N - n > 0 holonomic constraints
-// in them, or of as many, g = 0: varying masses, an observer that rotates and accelerates, moving guides, and
-// constraints of one order. Every force has a point of application, so that Newton's law gives the reaction on each
-// particle.
+// Random systems of particles: positions are functions of as many coordinates (g = 0), or of fewer coordinates, with g
+// = 3N - n > 0 holonomic constraints in them. They have varying masses, an observer that rotates and accelerates,
+// moving guides, and constraints of one order. Every force has a point of application, so Newton's law gives the
+// reaction on each particle.
 //
 // The same seed gives the same text everywhere: only the raw numbers of the generator are used.
 #pragma once

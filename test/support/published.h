@@ -1,4 +1,4 @@
-// A model as the subject of published equations, for tests with some of these.
+// A model with which a test compares published equations.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 namespace anholon::test {
 
-// A sleigh without forces, with a blade below its mass centre.
+// A sleigh without forces, with a blade below its centre of mass.
 inline constexpr const char* kSleigh = R"toml(coordinates = ["x", "y", "th"]
 parameters = {m = 2, J = 3}
 [[body]]
@@ -52,7 +52,7 @@ class Published {
     const auto list = read("e: " + equation + "\n");
     return list.empty() ? Comparison{} : subject_.compare(list[0]);
   }
-  // "from -> to" of the only change; else the number of changes.
+  // "from -> to" if there is one change, else the number of changes; the verdict's name if the equation is not refuted.
   std::string change(const std::string& equation) {
     const Comparison c = compare(equation);
     if (c.verdict != Verdict::refuted) return name(c.verdict);

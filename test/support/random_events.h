@@ -1,6 +1,6 @@
-// Random systems whose motion between events is known in closed form, and their events by an independent method: every
-// zero is bracketed by bounds of the second derivative and bisected in long double, on the exact pieces. A formula may
-// be replaced by another one with the same zeros that saturates, has a kink, or is steep.
+// Random systems whose motion between events is known in closed form. An independent method finds their events: bounds
+// of the second derivative bracket every zero, and bisection in long double finds it, on the exact pieces. A formula
+// may be replaced by another one with the same zeros that saturates, has a kink, or is steep.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -18,13 +18,13 @@ class EventModel {
  public:
   struct Occurred {
     std::size_t event;
-    Real t, slope;  // of the formula at its zero
+    Real t, slope;  // slope of the formula at its zero
   };
   // The events up to `end`; undecided if two events are nearly simultaneous, or a formula nearly touches zero.
   struct Course {
     std::vector<Occurred> events;
     bool decided = true, stopped = false;
-    std::vector<Real> x, v;  // at the end, of the bodies; v is meaningless for a state
+    std::vector<Real> x, v;  // at the end, of the bodies; v has no meaning for a body that fills
   };
 
   explicit EventModel(std::uint64_t seed) : seed_(seed * 0x9e3779b97f4a7c15ULL + 1) {
@@ -46,10 +46,10 @@ class EventModel {
   Course course() const;
 
  private:
-  enum class Law : std::uint8_t { falling, spring, filling };  // x'' = a; x'' = -w^2 (x - c); z' = r, by the mode
+  enum class Law : std::uint8_t { falling, spring, filling };  // x'' = a; x'' = -w^2 (x - c); z' = r; constants by mode
   enum class When : std::uint8_t { level, gap, velocity, time, square };
   enum class Set : std::uint8_t { nothing, bounce, collide, mode, kick, move, stop };
-  static constexpr std::size_t kPlain = 7;  // this form and those from 3 on are written unchanged
+  static constexpr std::size_t kPlain = 7;  // forms 0 to 2 replace the formula; forms 3 to 7 keep it
   struct Body {
     Law law;
     int w, constant[2], x, v;  // in hundredths
@@ -146,7 +146,7 @@ inline void EventModel::make_events() {
     e.level_text = text(level);
     const Body& b = bodies_[e.i];
     if (e.when == When::level && b.law == Law::falling && b.constant[0] < 0 && b.v > 0 && draw(3) == 0) {
-      // The top of the first arc, and the margin by which it misses or passes the level.
+      // The level is the top of the first arc, plus a margin by which the arc misses or passes the level.
       static const char* const misses[] = {"0", "1e-6", "-1e-6", "1e-9", "-1e-9", "1e-11", "-1e-11"};
       static const Real sizes[] = {0, 1e-6L, -1e-6L, 1e-9L, -1e-9L, 1e-11L, -1e-11L};
       const std::size_t m = draw(7);
@@ -361,7 +361,7 @@ inline std::optional<Real> first_change(const std::function<Real(Real)>& value, 
     }
     return high;
   }
-  if (half < 1e-12L) return std::nullopt;  // it touches zero
+  if (half < 1e-12L) return std::nullopt;  // the function touches zero
   if (const auto x = first_change(value, slope, bend, shift, side, from, middle)) return x;
   return first_change(value, slope, bend, shift, side, middle, to);
 }
@@ -418,7 +418,7 @@ inline EventModel::Course EventModel::course() const {
     }
   };
   find_sides(s, std::vector<bool>(events_.size(), true));
-  Real since = 0;  // events recorded in this piece, up to here
+  Real since = 0;  // events of this piece are recorded up to this time
   while (out.decided) {
     const Real within = end - s.t;
     struct Next {
@@ -435,11 +435,11 @@ inline EventModel::Course EventModel::course() const {
       const auto dt = change(0);
       const Real doubt = s.t == 0 ? kFirst : kDoubt;
       for (Real shift : {doubt, -doubt}) {
-        // If the formula begins at zero, a shift against the side is passed at once.
+        // If the formula begins at zero, a shift against its side is passed at once.
         if (std::abs(f.value(since)) <= doubt && shift * sides[k] < 0) continue;
         const auto other = change(shift);
         if (dt.has_value() != other.has_value() || (dt && std::abs(*dt - *other) > 1e-2L)) {
-          // An arc that touches exactly at the first event is decided: it does not pass.
+          // An arc that touches zero exactly at the first event is decided: the arc does not pass.
           const bool exact = doubt == kFirst && !dt && !change(-sides[k] * 1e-16L) ? false : doubt == kFirst && !dt;
           if (!exact) out.decided = false;
         }

@@ -54,8 +54,8 @@ class RandomExpr {
     }
   }
 
-  // The elementary function number k of an argument adapted to its domain; abs and sign, which have a corner, are kept
-  // away from it.
+  // The elementary function number k, of an argument that stays in its domain; the arguments of abs and sign stay away
+  // from the corner.
   Expr function(int k, Expr u) {
     const Function f = static_cast<Function>(k);
     switch (f) {

@@ -24,13 +24,13 @@ class RandomSystem {
   }
 
   const std::string& text() const { return text_; }
-  // A description in one line.
+  // A description of the system in one line.
   const std::string& what() const { return what_; }
 
  private:
   std::size_t below(std::size_t k) { return static_cast<std::size_t>(random_() % k); }
   bool one_in(std::size_t k) { return below(k) == 0; }
-  // p/q with |p/q| between lo and hi hundredths.
+  // v/100 for a random whole number v from lo to hi.
   std::string number(int lo, int hi) {
     const int v = lo + static_cast<int>(below(static_cast<std::size_t>(hi - lo + 1)));
     return std::to_string(v) + "/100";
@@ -96,7 +96,7 @@ class RandomSystem {
                "\", \"cos(t)\", \"" + any(1) + "*" + any() + "/4\"]\n";
   }
 
-  // Terms of lower order, bounded in the coordinates.
+  // A sum of terms with derivatives of at most order - 1, bounded in the coordinates.
   std::string lower(int order) {
     std::string s = signed_number(10, 60) + "*" + function(one_in(2));
     if (order > 0) s += " + " + signed_number(10, 40) + "*" + any(order - 1);

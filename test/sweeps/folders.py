@@ -2,9 +2,9 @@
 """Sweeps in folders: whatever happens to the processes, what is collected has the bytes of one quiet sweep.
 
     folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model tables part judgement status plot watched refine page outside
-    folders.py --self-test                                  a part with other numbers is found
+    folders.py --self-test                                  a part with other numbers is noticed
 
-Kills come at random moments. Nothing is lost but parts under way, and nothing is left behind that a later process does not clear.
+Kills come at random moments. Only unfinished parts are lost, and a later process clears all files that are left.
 """
 
 import argparse
@@ -73,7 +73,7 @@ class Folders:
         shutil.rmtree(self.folder)
 
     def kill(self):
-        """kill -9 at random moments; the same command goes on."""
+        """kill -9 at random moments; the same command continues."""
         for _ in range(self.kills):
             process = self.begin(*self.into())
             time.sleep(random.uniform(0, 0.25))
@@ -85,7 +85,7 @@ class Folders:
         self.check()
 
     def stop(self):
-        """A process that is stopped while another one computes its part: its late commit does no harm."""
+        """A process is stopped while another one computes its part: its late commit does no harm."""
         process = self.begin(*self.into("--shard", "1/1"))
         time.sleep(0.2)
         process.send_signal(signal.SIGSTOP)
@@ -96,7 +96,7 @@ class Folders:
         self.check()
 
     def two(self):
-        """Two processes on one folder; each computes what the other has not."""
+        """Two processes share one folder; each computes the parts that the other has not computed."""
         processes = [self.begin(*self.into()) for _ in range(2)]
         for process in processes:
             _, error = process.communicate(timeout=PATIENCE)
@@ -104,7 +104,7 @@ class Folders:
         self.check()
 
     def shards(self):
-        """Three shares, one of which is killed and started anew."""
+        """Three shares; one is killed and started anew."""
         processes = [self.begin(*self.into("--shard", f"{k}/3")) for k in (1, 2, 3)]
         time.sleep(0.2)
         processes[1].kill()
@@ -116,7 +116,7 @@ class Folders:
         must("--shard takes a share" in error, error)
 
     def disk(self):
-        """A full disk, by a limit on the size of files; then room again."""
+        """A full disk, made by a limit on the size of files; then there is room again."""
         limited = ["bash", "-c", 'ulimit -f 1; trap "" XFSZ; exec "$0" "$@"', self.program, *self.into()]
         done = subprocess.run(limited, capture_output=True, text=True, timeout=PATIENCE, check=False)
         must(done.returncode == 2 and "cannot write" in done.stderr, f"{done.returncode}: {done.stderr}")
@@ -125,7 +125,7 @@ class Folders:
         self.check()
 
     def model(self):
-        """Other options, another model, a foreign folder: named, and nothing is overwritten."""
+        """Other options, another model or a foreign folder are named, and nothing is overwritten."""
         self.run(*self.into())
         before = {p.name: self.hash(p) for p in self.folder.iterdir()}
         for words, word in [(["--tolerance", "1e-9"], "tolerance"), (["--set", "m=2"], "set"), (["--to", "6"], "to")]:
@@ -186,7 +186,7 @@ class Folders:
         self.check()
 
     def judgement(self):
-        """A judgement that was damaged is named; without it the command judges again."""
+        """A damaged judgement is named; without it the command judges again."""
         self.run(*self.into())
         judgement = self.folder / "_judgement.json"
         before = judgement.read_bytes()
@@ -201,7 +201,7 @@ class Folders:
         self.check()
 
     def status(self):
-        """What any process that sees the folder is told."""
+        """The status of a folder, for any process that sees it."""
         self.run(*self.into("--shard", "1/2"))
         out, _ = self.run("sweep", "status", str(self.folder), "--json", status=1)
         told = json.loads(out)
@@ -209,12 +209,12 @@ class Folders:
         must(sum(told["outcomes"].values()) == 80 and set(told["outcomes"]) >= {"finished"} and "judgement" not in told, out)
         self.run(*self.into())
         self.run("sweep", "status", str(self.folder), status=0)
-        # The judgement is that of a sweep without a folder.
+        # The judgement equals that of a sweep without a folder.
         told = json.loads(self.run("sweep", "status", str(self.folder), "--json", status=0)[0])["judgement"]
         alone = json.loads(self.run(*[w for w in SWEEP if w != "--quiet"], "--json")[0])
         must(told["error_estimate"] == alone["error_estimate"] and told["residuals"] == alone["residuals"], f"{told}\n{alone['residuals']}")
         must(told["residuals"]["checked"] and told["residuals"]["newton"]["worst"] < 1e-9, str(told))
-        # So is the report of a collected file, and why cases stopped.
+        # The report of a collected file agrees as well, and so do the reasons why cases stopped.
         report, _ = self.run(*[w for w in SWEEP if w != "--quiet"], "--json")
         must(self.run("sweep", "collect", str(self.folder), "--json", status=0)[0] == report, "the JSON of collect differs")
         stopped = json.loads(report)["stopped"]
@@ -227,7 +227,7 @@ class Folders:
 
 
     def plot(self):
-        """Pictures of a folder, which are the same for the same cases; mistakes are named."""
+        """Pictures of a folder are the same for the same cases; mistakes are named."""
         self.run(*self.into())
         pictures = []
         for name in ("outcome", "theta"):
@@ -237,7 +237,7 @@ class Folders:
                 pictures.append(path.read_text())
         must(pictures[0] == pictures[1] and pictures[2] == pictures[3] != pictures[0], "the pictures differ")
         must("finished" in pictures[0] and pictures[0].count("<rect") >= 4, "no cells, or no legend")
-        # The files of a sweep show the same, but for units, which the model tells.
+        # The files of a sweep give the same picture except for units, which the model gives.
         for name in ("cases.csv", "cases.parquet"):
             self.run("sweep", "collect", str(self.folder), "--quiet", "-o", str(self.place / name), status=0)
             self.run("plot", str(self.place / name), "theta", "-o", str(self.place / "file.svg"), status=0)
@@ -257,7 +257,7 @@ class Folders:
         self.check()
 
     def watched(self):
-        """Another process looks on until the sweep is complete."""
+        """Another process watches until the sweep is complete."""
         self.run(*self.into("--shard", "1/2"))
         watcher = self.begin("sweep", "status", str(self.folder), "--watch")
         time.sleep(0.3)
@@ -274,7 +274,8 @@ class Folders:
     def refined(self, folder, *words, rule="theta:0.25"):
         return [*self.REFINED, "-o", str(folder) + "/", *words, *(["--refine-by", rule] if rule else [])]
 
-    # Each of these begins a process, lets one thing happen to it after some seconds, and returns whether it was still at work then.
+    # Each of these begins a process, does one thing to it after some seconds, and returns whether the process was
+    # still at work then.
 
     def kill_one(self, words, seconds):
         process = self.begin(*words)
@@ -311,7 +312,7 @@ class Folders:
         return process.returncode == 2
 
     def refine(self):
-        """Generations at borders: the same cases after kills, with other parts, threads and shares, and those of a single sweep."""
+        """Generations at borders: the cases are the same after kills, with other parts, threads and shares, and as those of a single sweep."""
         quiet, all_of = self.place / "quiet", self.place / "refined.csv"
         self.run(*self.refined(quiet, "--refine", "3", "--chunk", "1000"), status=0)
 
@@ -343,20 +344,20 @@ class Folders:
         must(sum(g["cases"] for g in generations) == told["cases"] and generations[1]["first_case"] == 117, str(told))
         shutil.rmtree(self.folder)
 
-        # Each share goes as far as it can; the next round begins the next generation.
+        # Each share computes as much as it can; the next round begins the next generation.
         for _ in range(4):
             for share in ("1/2", "2/2"):
                 self.run(*self.refined(self.folder, "--refine", "3", "--chunk", "7", "--shard", share))
         must(collected(self.folder) == expected, "shares have other cases")
 
-        # The last case is that of its own numbers.
+        # The last case has the result of its own numbers.
         header, *rows = all_of.read_text().splitlines()
         table, alone = self.place / "one.csv", self.place / "one-out.csv"
         table.write_text("phi',theta\n" + ",".join(rows[-1].split(",")[1:3]) + "\n")
         self.run("sweep", "disc", "--cases", str(table), "--to", "3", "--quiet", "--error-estimate", "never", "-o", str(alone), status=0)
         must(alone.read_text().splitlines()[1].split(",")[1:] == rows[-1].split(",")[1:], "a refined case has other numbers than alone")
 
-        # Another rule, no grid, a plan that was changed.
+        # Another rule, no grid, and a changed plan are refused.
         for generations in "4", "3", "1":
             _, error = self.run(*self.refined(self.folder, "--refine", generations, rule="theta:0.2"), status=2)
             must("refined by 'theta:0.25', not by 'theta:0.2'" in error, error)
@@ -427,7 +428,7 @@ class Folders:
 
 
     def outside(self):
-        """Mistakes from outside: each is named, and nothing is overwritten."""
+        """Mistakes made by other programs are named, and nothing is overwritten."""
         self.run(*self.into())
         part, request = self.folder / "part-000001.parquet", self.folder / "_sweep.json"
         whole, text = part.read_bytes(), request.read_text()
@@ -449,7 +450,7 @@ class Folders:
         request.unlink()
         _, error = self.run(*self.into(), status=2)
         must("its _sweep.json is missing" in error, error)
-        # A folder of an earlier version has the request under another name, and was made by another program.
+        # The folder of an earlier version has its request under another name, and another program made it.
         older = self.folder / "sweep.json"
         older.write_text(text.replace('"program": "anholon ', '"program": "anholon 0.0.1 before '))
         part.unlink()
@@ -496,7 +497,7 @@ def run_parts(arguments):
 
 
 def self_test(arguments):
-    """A part of another sweep's numbers has to be found by the comparison of bytes."""
+    """The comparison of bytes has to find a part with the numbers of another sweep."""
     with tempfile.TemporaryDirectory() as place:
         folders = Folders(os.path.abspath(arguments.program), place, 1)
         folders.expected = "0" * 64

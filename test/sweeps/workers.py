@@ -2,13 +2,13 @@
 """Sweeps in folders under engines of others, which fail: what is collected has the bytes of one quiet process.
 
     workers.py --program PROGRAM [--kills 40] [--rounds 40] [PART...]
-    workers.py --self-test                                  other bytes are found
+    workers.py --self-test                                  other bytes are noticed
 
-PART is one of workers refined stopped scheduler client_killed disk clients parallel slurm. The first two kill as many workers as --kills
-says; each other one is repeated --rounds times, with its failure at another random moment.
+PART is one of workers refined stopped scheduler client_killed disk clients parallel slurm. The first two kill --kills
+workers; each other part is repeated --rounds times, with its failure at another random moment.
 
-Workers are processes `dask worker`; parts that need Dask are left out where it is missing, and so are GNU parallel (xargs takes its
-place) and Slurm (only with ANHOLON_LONG, or if it is named).
+Workers are processes `dask worker`; parts that need Dask are left out if Dask is missing. xargs replaces a missing GNU parallel.
+Slurm runs only with ANHOLON_LONG, or if it is named.
 """
 
 import argparse
@@ -40,7 +40,7 @@ def must(truth, what):
 
 
 def sweep(folder, on=None):
-    """The sweep of this test: a client of Dask, an address, or threads of this process."""
+    """The sweep of this test; `on` is a client of Dask, an address, or None for threads of this process."""
     import anholon as an
 
     return an.load("disc").sweep({"phi'": SPINS, "theta": [1.2, 1.3, 1.4, 0]}, to=12, out=folder, chunk=100, on=on, threads=1)
@@ -62,7 +62,7 @@ def hash_of(path):
 
 
 class Cluster:
-    """A scheduler and workers, each a process of its own."""
+    """A scheduler and workers, each a separate process."""
 
     def __init__(self, place, workers=2):
         self.place = place
@@ -77,7 +77,7 @@ class Cluster:
         return subprocess.Popen([sys.executable, "-m", "distributed.cli.dask_" + kind, *words], stdout=self.log, stderr=self.log, cwd=self.place)
 
     def worker(self):
-        # Without a nanny: a killed worker is gone, as the machine of a cluster is.
+        # Workers have no nanny, so a killed worker is gone, as the machine of a cluster would be.
         return self.begin("worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--death-timeout", "60")
 
     def close(self):
@@ -122,7 +122,7 @@ class Workers:
         return len(list(self.folder.glob("part-*.parquet"))) if self.folder.exists() else 0
 
     def client(self, address, name="sweep"):
-        """A client in a process of its own, which asks for one of SWEEPS."""
+        """A client in a separate process, which requests one of SWEEPS."""
         return subprocess.Popen(
             [sys.executable, __file__, "--client", name, str(self.folder), address], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
@@ -133,7 +133,7 @@ class Workers:
         return error
 
     def wait_for(self, parts, client):
-        """Waits for the folder and some more, and for so many parts in it; returns how many there are."""
+        """Waits for the folder, a little longer, and for `parts` parts in it. Returns the number of parts."""
         end = time.monotonic() + PATIENCE
         while (not self.folder.exists() or self.present() < parts) and client.poll() is None:
             must(time.monotonic() < end, "nothing happens")
@@ -168,7 +168,7 @@ class Workers:
         self.kill_workers("borders", whole)
 
     def kill_workers(self, name, whole):
-        """Kills workers of clients, one client after the other; `whole` looks at the folder of each."""
+        """Kills workers of clients, one client after the other; `whole` checks the folder of each."""
         with Cluster(self.place) as cluster:
             killed = 0
             while killed < self.kills:
@@ -190,7 +190,8 @@ class Workers:
             self.wait_for(random.randint(0, PARTS - 6), client)
             late = random.choice(cluster.workers)
             late.send_signal(signal.SIGSTOP)
-            # The scheduler waits for a stopped worker as long as its connection lives; another process takes its part.
+            # The scheduler waits for a stopped worker as long as its connection lives; another process computes its
+            # part.
             sweep(self.folder)
             late.send_signal(signal.SIGCONT)
             self.finish(client)
@@ -198,7 +199,7 @@ class Workers:
             self.check()
 
     def scheduler(self):
-        """The scheduler dies: the client says so, and the same call goes on with another one."""
+        """The scheduler dies: the client reports it, and the same call continues with another scheduler."""
         with Cluster(self.place) as cluster:
             client = self.client(cluster.address)
             parts = self.wait_for(random.randint(0, PARTS - 6), client)
@@ -213,7 +214,7 @@ class Workers:
         self.check()
 
     def client_killed(self):
-        """The client dies: its parts are kept, and another client goes on."""
+        """The client dies: its parts are kept, and another client continues."""
         with Cluster(self.place) as cluster:
             client = self.client(cluster.address)
             parts = self.wait_for(random.randint(0, PARTS - 1), client)
@@ -225,7 +226,7 @@ class Workers:
             self.check()
 
     def disk(self):
-        """A full disk, by a limit on the size of the workers' files: the client says so. Then there is room again."""
+        """A full disk, made by a limit on the size of the workers' files: the client reports it. Then there is room again."""
         self.folder.mkdir()
         with Cluster(self.place, workers=0) as cluster:
             limited = ["bash", "-c", 'trap "" XFSZ; ulimit -f 8; exec "$0" "$@"', sys.executable, "-m", "distributed.cli.dask_worker"]
@@ -240,7 +241,7 @@ class Workers:
         self.check()
 
     def clients(self):
-        """Two clients on one folder."""
+        """Two clients share one folder."""
         with Cluster(self.place) as cluster:
             both = [self.client(cluster.address) for _ in range(2)]
             for client in both:
@@ -252,17 +253,18 @@ class Workers:
         return [*words, "--chunk", "100", "-o", str(self.folder) + "/", *extra]
 
     def by_command(self):
-        """The hash of what one quiet command computes."""
+        """The hash of the file that one quiet command computes."""
         self.run(*self.shares(), status=1)
         expected = self.collected()
         shutil.rmtree(self.folder)
         return expected
 
     def parallel(self):
-        """Shares begun by GNU parallel, or xargs; one is killed and begun anew."""
+        """GNU parallel, or xargs, begins the shares; one is killed and begun anew."""
         expected = self.by_command()
         numbers = [str(k) for k in (1, 2, 3, 4)]
-        # Each share tells its process, so that one can be killed. xargs ends at a command that a signal ended, so the shell outlives it.
+        # Each share writes its process id, so that one can be killed. xargs ends if a signal ends its command, so the
+        # shell outlives the share.
         command = " ".join(f'"{w}"' for w in [self.program, *self.shares("--shard")])
         share = f'{command} "$1/4" & echo $! > {self.place}/share-$1; wait $!'
         script = self.place / "share.sh"
@@ -418,7 +420,7 @@ def has_dask():
 
 
 def slurm_lacks():
-    """What the part `slurm` lacks here; empty if it can run."""
+    """The reason why the part `slurm` cannot run here, or an empty text."""
     missing = [p for p in ("slurmctld", "slurmd", "munged", "sbatch") if not shutil.which(p) and not os.path.exists(f"/usr/sbin/{p}")]
     if missing:
         return f"missing: {', '.join(missing)}"
@@ -427,7 +429,7 @@ def slurm_lacks():
 
 DASK = ["workers", "refined", "stopped", "scheduler", "client_killed", "disk", "clients"]
 ALL = [*DASK, "parallel", "slurm"]
-KILLS = ["workers", "refined"]  # count their kills themselves
+KILLS = ["workers", "refined"]  # these parts count their kills themselves
 
 
 def run_parts(arguments):

@@ -1,4 +1,4 @@
-// Numbers between tabs: a format that is a file of its own and a name in the table.
+// A format that is added by a file of its own and a name in the table: numbers between tabs.
 #include <cstdio>
 
 #include "base/diagnostic.h"

@@ -1,4 +1,4 @@
-// The table of formats with one more row, in place of result/formats.cpp.
+// Replaces result/formats.cpp: the table of formats has one more row.
 #include "result/format.h"
 
 namespace anholon {

@@ -6,7 +6,7 @@
 namespace anholon::base64_test {
 namespace {
 
-// RFC 4648, section 10, and bytes that are no text.
+// The texts of RFC 4648, section 10, and bytes that are no text.
 TEST(Base64, KnownTexts) {
   for (const auto& [bytes, text] : {std::pair{"f", "Zg=="},
                                     {"fo", "Zm8="},

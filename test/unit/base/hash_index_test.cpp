@@ -7,7 +7,7 @@
 namespace anholon::hash_index_test {
 namespace {
 
-// `values[id]` under a hash value that `bits` bits tell apart.
+// An index in which id has the hash values[id], of which only the lowest `bits` bits are kept.
 HashIndex index_of(const std::vector<std::uint64_t>& values, std::uint64_t bits) {
   HashIndex index;
   for (std::uint32_t id = 0; id < values.size(); ++id) index.insert(values[id] % (1ULL << bits), id);

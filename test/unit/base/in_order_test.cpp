@@ -1,5 +1,5 @@
-// Blocks are worked on in their order, by whichever thread; what the work throws comes back. Rows have the same bits
-// beside the motion and in its thread.
+// Blocks are worked on in their order by several threads, and an exception of the work is rethrown. Rows have the same
+// bits if they are computed beside the motion or in its thread.
 #include <gtest/gtest.h>
 #include <sched.h>
 
@@ -48,7 +48,8 @@ TEST_P(InOrderOf, GivesBackWhatTheWorkThrows) {
 
 INSTANTIATE_TEST_SUITE_P(Threads, InOrderOf, testing::Bool());
 
-// The rows and the report of a run on one core and on all of them. 2000 rows: more than those that start a thread.
+// Compares the rows and the report of a run on one core with those on all cores. There are 2000 rows, more than start a
+// thread.
 TEST(RowsBesideTheMotion, HaveTheSameBits) {
   const auto run = [](const char* model, SimulationReport& report) {
     Scenario s;
@@ -79,7 +80,7 @@ TEST(RowsBesideTheMotion, HaveTheSameBits) {
   }
 }
 
-// A sink that notes the ends of steps, the number of rows before each, and the thread that tells it.
+// A sink that records the end of each step, the number of rows before it, and the thread that reports it.
 class Steps final : public RowSink {
  public:
   void columns(const std::vector<RunColumn>&) override {}
@@ -95,7 +96,7 @@ class Steps final : public RowSink {
   double last_ = 0;
 };
 
-// Several steps lie between two rows, so stretches of steps are told beside rows that are under way.
+// Several steps lie between two rows, so steps are reported while rows are still being computed.
 TEST(RowsBesideTheMotion, HaveTheStepsInTheirOrder) {
   Scenario s;
   SimulationOptions o;

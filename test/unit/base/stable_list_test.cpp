@@ -23,7 +23,7 @@ TEST(StableList, KeepsItsElementsWhereTheyAre) {
   }
 }
 
-// Parts of many lengths, also ones that are longer than a block and ones at its very end.
+// Parts have many lengths; some are longer than a block, some end exactly with it.
 TEST(StableList, PutsPartsSideBySide) {
   StableList<int> list;
   struct Part {

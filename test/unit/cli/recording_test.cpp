@@ -7,7 +7,7 @@
 namespace anholon::cli::recording_test {
 namespace {
 
-// One pixel, 1x1; as a browser's toDataURL gives it.
+// A picture of 1 x 1 pixel, as a browser's toDataURL gives it.
 constexpr const char* kPixel =
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
 
@@ -42,7 +42,7 @@ TEST(Pictures, OutOfAPage) {
 TEST(Pictures, WhatIsMissingOrDamagedIsNoticed) {
   const std::string png = "data:image/png;base64," + std::string(kPixel), line = "<pre data-frame=\"0\">";
   EXPECT_EQ(pictures("", 0, 1, 1, 1).error, "no picture");
-  EXPECT_EQ(pictures(line + png, 0, 1, 1, 1).error, "no picture");  // the text was cut off
+  EXPECT_EQ(pictures(line + png, 0, 1, 1, 1).error, "no picture");  // the text is cut off
   EXPECT_EQ(pictures(line + "data:,</pre>", 0, 1, 1, 1).error, "a picture that is no PNG");
   EXPECT_EQ(pictures(line + png + "</pre>", 0, 1, 2, 1).error, "a picture of another size");
   EXPECT_EQ(pictures(line + png.substr(0, png.size() - 24) + "</pre>", 0, 1, 1, 1).error, "a picture that is damaged");
@@ -96,7 +96,7 @@ TEST(Recording, SizesAndRates) {
 TEST(Recording, MomentsOfAMotion) {
   Recording r;
   r.kind = Record::mp4;
-  EXPECT_EQ(moments(r, 0, 4).count, 120U);     // as fast as it is
+  EXPECT_EQ(moments(r, 0, 4).count, 120U);     // in real time
   EXPECT_EQ(moments(r, 0, 1).count, 300U);     // too short to be seen
   EXPECT_EQ(moments(r, 0, 1000).count, 300U);  // too long to be watched
   r.seconds = 0.01;
@@ -106,13 +106,13 @@ TEST(Recording, MomentsOfAMotion) {
   EXPECT_EQ(m.count, 60U);
   EXPECT_EQ(m.first, 1);
   EXPECT_EQ(m.last, 3);
-  EXPECT_EQ(moments(r, 0, 2).last, 2);         // a motion that stopped early
-  EXPECT_THROW(moments(r, 5, 9), UsageError);  // --from before it
-  EXPECT_THROW(moments(r, 0, 1), UsageError);  // nothing of it
+  EXPECT_EQ(moments(r, 0, 2).last, 2);         // the motion stopped early
+  EXPECT_THROW(moments(r, 5, 9), UsageError);  // --from is after the motion
+  EXPECT_THROW(moments(r, 0, 1), UsageError);  // the interval holds none of the motion
   r.seconds = 1e6, r.to.reset();
   EXPECT_THROW(moments(r, 0, 4), UsageError);
   r.seconds.reset(), r.from.reset();
-  EXPECT_EQ(moments(r, 3, -1).first, 3);  // backwards
+  EXPECT_EQ(moments(r, 3, -1).first, 3);  // the motion runs backwards
   EXPECT_EQ(moments(r, 3, -1).last, -1);
   r.kind = Record::picture;
   EXPECT_EQ(moments(r, 1, 4).first, 1);
@@ -147,7 +147,7 @@ TEST(Child, OutputStatusAndEnds) {
   EXPECT_EQ(run_child({"/bin/sh", "-c", "sleep 60"}, 0.2, never, 1000).end, Child::End::out_of_time);
   EXPECT_EQ(run_child({"/bin/sh", "-c", "sleep 60"}, 60, [] { return true; }, 1000).end, Child::End::stopped);
   EXPECT_EQ(run_child({"/bin/sh", "-c", "yes"}, 60, never, 1000).end, Child::End::too_much);
-  // No word is read by a shell, and nothing waits for input.
+  // No shell reads the words, and no process waits for input.
   EXPECT_EQ(run_child({"/bin/echo", "$(id); *"}, 60, never, 1000).out, "$(id); *\n");
   EXPECT_EQ(run_child({"/bin/cat"}, 60, never, 1000).out, "");
 }
@@ -158,7 +158,7 @@ TEST(Child, MuchOutputArrivesWhole) {
 }
 
 TEST(Child, WhatItLeftBehindIsGone) {
-  // The grandchild keeps the streams open; nobody waits for it.
+  // The grandchild keeps the streams open; run_child does not wait for it.
   const Child c = run_child({"/bin/sh", "-c", "sleep 60 & echo $!"}, 60, nullptr, 1000);
   EXPECT_EQ(c.end, Child::End::exited);
   EXPECT_NE(c.out, "");

@@ -1,4 +1,5 @@
-// An axle that comes down on one ball, then on the other: an impact on a contact that is closed, friction that both share.
+// An axle that comes down on one ball, then on the other: an impact on a contact that is closed, friction that both
+// share.
 #include <cmath>
 #include <map>
 
@@ -28,8 +29,9 @@ initial = )toml" +
          initial;
 }
 
-// The left ball strikes while the right one slips. Both then stick: the jump is the projection in the mass norm onto velocities
-// at which both rest, and impulses in both cones exist. Shared by load alone, that of the right ball leaves its cone.
+// The left ball strikes while the right one slips. Both then stick: the jump is the projection in the mass norm onto
+// velocities at which both rest, and there are impulses in both cones. If friction were shared by load alone, the
+// impulse of the right ball would leave its cone.
 TEST(Axle, SharesFrictionInAnImpact) {
   const auto m = contact_motion(
       axle(R"({z = 0.188, ro = 0.238, th = -0.08, "x'" = 0.3, "th'" = 0.16, "ro'" = 0.29, "psi'" = 0.38})"),
@@ -42,7 +44,7 @@ TEST(Axle, SharesFrictionInAnImpact) {
   EXPECT_EQ(m.last("right.mode"), 2);
   EXPECT_LT(m.last("left_slip"), 1e-13);
   EXPECT_LT(m.last("right_slip"), 1e-13);
-  // By NumPy: the projection, and a fixed point of projections of the impulses onto the cones.
+  // Computed with NumPy: the projection, and a fixed point of projections of the impulses onto the cones.
   const std::map<std::string, double> jumps = {{"x'", 0.07926868},  {"y'", -0.44364017}, {"z'", 0.83043841},
                                                {"psi'", 0.8037576}, {"th'", 1.71083592}, {"ro'", 5.54947064}};
   for (const EventReport& e : m.report.events)
@@ -52,8 +54,7 @@ TEST(Axle, SharesFrictionInAnImpact) {
       }
 }
 
-// Where both balls touch, the axle does not tilt. That it tilts by 1.4e-16 there is round-off, and so is the velocity with which
-// it would tilt.
+// An axle whose balls both touch is not tilted. Its tilt of 1.4e-16 is round-off, and so is the rate of the tilt.
 TEST(Axle, TiltsByRoundOffAlone) {
   const auto m = contact_motion(
       axle(R"({z = 0.272, ro = -0.158, th = 0.28, "x'" = 0.3, "th'" = 3.03, "ro'" = 0.74, "psi'" = -0.2})"),
@@ -65,8 +66,8 @@ TEST(Axle, TiltsByRoundOffAlone) {
   EXPECT_LT(std::abs(m.last("ro'")), 1e-14);
 }
 
-// The balls strike in turns, sooner and sooner. Where both come to touch, one gap is 1e-13, and the axle is brought to the place at
-// which both gaps are zero, as the mode holds them there.
+// The balls strike in turn, sooner and sooner. When both come to rest one gap is 1e-13, and the axle is moved to the
+// place at which both gaps are zero, where the mode holds them.
 TEST(Axle, ComesToLieOnBothBalls) {
   const auto m = contact_motion(
       axle(R"({z = 0.232, ro = 0.175, th = -0.9, "x'" = 0.3, "th'" = -1.12, "ro'" = -0.53, "psi'" = -1.69})"),
@@ -78,7 +79,7 @@ TEST(Axle, ComesToLieOnBothBalls) {
   EXPECT_GT(m.last("left.mode") * m.last("right.mode"), 0);
 }
 
-// The axle falls over its balls. Where it hangs down, its three angles have their singularity.
+// The axle falls over its balls. Its three angles are singular in the hanging position.
 TEST(Axle, NamesAnglesAtTheirSingularity) {
   const auto m = contact_motion(axle(R"({z = 0.2, ro = 0.05, "x'" = 0.3, "th'" = -3, "ro'" = 0.2, "psi'" = 0.3})"), 1);
   EXPECT_EQ(m.report.outcome.kind, OutcomeKind::singular);

@@ -1,4 +1,4 @@
-// Surfaces of contacts with kinks and jumps: at a ramp, at the edge of a table, on a belt or a lift that changes its speed at once.
+// Surfaces of contacts with kinks and jumps: a ramp, the edge of a table, and a belt or a lift whose speed jumps.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -123,12 +123,12 @@ TEST(Borders, NoContactHoldsABodyInAnEdge) {
     EXPECT_EQ(m.report.outcome.kind, OutcomeKind::inconsistent);
     EXPECT_NE(m.report.outcome.message.find("held by an edge"), std::string::npos);
   }
-  // Without loss it goes on for ever.
+  // Without loss the motion continues for ever.
   const auto m = ok_motion(puck(contact, "x = -1\nz = 1\n"), 3, {{"e", "1"}});
   EXPECT_EQ(times(m, "ground.hits").size(), 2U);
 }
 
-// On a ridge that points upwards the normal has no direction for a body that comes straight upon it, or lies on it.
+// A ridge that points upwards has no normal for a body that strikes it head-on or lies on it.
 TEST(Borders, RidgeHasNoNormal) {
   const std::string ridge =
       R"toml(contact = [{name = "ridge", gap = "z + k*abs(x)", slip = "x'", friction = "mu"}])toml";
@@ -138,7 +138,7 @@ TEST(Borders, RidgeHasNoNormal) {
     EXPECT_NE(m.report.outcome.message.find("meets an edge of the surface of contact 'ridge'"), std::string::npos);
     EXPECT_EQ(m.report.outcome.place.line, 5U);
   }
-  // The mutants: beside the ridge, across it, and on a rounded one.
+  // The mutants: the body strikes beside the ridge, moves across it, or strikes a rounded ridge.
   EXPECT_TRUE(contact_motion(puck(ridge, "x = 1e-3\nz = 1"), 1).report.outcome.ok());
   EXPECT_TRUE(contact_motion(puck(ridge, "x = -1e-3\nz = 1\n\"x'\" = 1"), 1).report.outcome.ok());
   const auto round = contact_motion(puck(R"toml(contact = [{name = "ridge", gap = "z + k*sqrt(x^2 + 1e-4)"}])toml"), 1);
@@ -169,7 +169,7 @@ z = "R*sin(th0)"
   EXPECT_NE(m.report.outcome.message.find("a disc lies flat"), std::string::npos) << m.report.outcome.message;
 }
 
-// A spin that resistance ends before the disc lies flat: the changes of its modes add up to the time at which it does.
+// The changes of the disc's modes accumulate at the time at which it lies flat; resistance ends its spin before.
 TEST(Borders, EulersDiscIsFollowedToItsEnd) {
   const auto m = contact_motion(R"toml(coordinates = ["x", "y", "z", "a", "b", "c", "d"]
 parameters = {m = 0.4, R = 0.0375, g = 9.81, mu = 0.4, dl = 0.01, th0 = 0.5, W = 40}

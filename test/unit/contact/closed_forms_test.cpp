@@ -1,4 +1,5 @@
-// Motions with contacts that have closed forms. Each test has a mutant, a model of other constants, that does not fit.
+// Motions with contacts that have closed forms. Each test has a mutant, a model with other constants, whose motion
+// differs.
 #include <array>
 #include <cmath>
 
@@ -49,7 +50,7 @@ TEST(ClosedForms, BallWithBackSpinRolls) {
     EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
     const auto list = times(m, "floor.sticks");
     EXPECT_EQ(list.size(), 1U);
-    // Rolling keeps the velocity, to the bits of x' = R phi'.
+    // Rolling keeps the velocity to the bits of x' = R phi'.
     expect_near(m.last("x'"), 0.11 * m.last("phi'"), 1e-14);
     return std::pair{list.at(0), m.last("x'")};
   };
@@ -57,7 +58,7 @@ TEST(ClosedForms, BallWithBackSpinRolls) {
   const auto [t, v] = rolls("2/5*m*R^2");
   expect_near(t, 2 * slip / (7 * mu_g), 1e-12);
   expect_near(v, 3 - 2.0 / 7 * slip, 1e-12);
-  // The mutant: a hollow ball rolls at 2 v/(5 mu g).
+  // The mutant: a hollow ball rolls from the time 2 v/(5 mu g) on.
   const double hollow = rolls("2/3*m*R^2").first;
   expect_near(hollow, 2 * slip / (5 * mu_g), 1e-12);
   EXPECT_GT(std::abs(hollow - t), 0.1);
@@ -80,7 +81,8 @@ static_friction = "mus"
 )toml";
 }
 
-// The block sticks up to the stretch mus m g/k and slips about the stretch muk m g/k, back to the velocity of the belt.
+// The block sticks up to the stretch mus m g/k; it slips about the stretch muk m g/k until it has the velocity of the
+// belt again.
 TEST(ClosedForms, PeriodOfStickAndSlip) {
   const auto period = [](double friction) {
     const auto m = contact_motion(belt(friction), 10);
@@ -97,8 +99,8 @@ TEST(ClosedForms, PeriodOfStickAndSlip) {
   EXPECT_GT(std::abs(period(0.2) - formula(0.25)), 1e-2);  // the mutant
 }
 
-// A block on a spring turns back every pi seconds, each time 2 mu g nearer to the middle. It sticks where the spring pulls
-// with less than friction.
+// A block on a spring turns back every pi seconds, each time 2 mu g nearer to the middle. It sticks when the pull of
+// the spring is less than friction.
 TEST(ClosedForms, BlockOnASpringReversesAndSticksAtLast) {
   const auto block = [](const std::string& friction) {
     return contact_motion(R"toml(coordinates = ["x", "z"]
@@ -143,7 +145,7 @@ initial = {x = 0.1}
   EXPECT_GT(contact_motion(slope, 20, {{"mu", "0.2"}}).last("x"), 0.11);  // the mutant
 }
 
-// Where the force that holds passes the friction at the instant at which it slips, the acceleration is zero.
+// The block slips from the instant at which the pushing force passes the friction; its acceleration is zero then.
 TEST(ClosedForms, BlockThatIsPushedEverHarderSlips) {
   const std::string push = R"toml(coordinates = ["x", "z"]
 parameters = {F = 0}
@@ -162,7 +164,8 @@ contact = [{name = "floor", gap = "z", slip = "x'", friction = 0.3}]
   }
 }
 
-// The normal force is zero at the start and its rate decides: pressed the block touches, lifted it leaves.
+// The normal force is zero at the start and its rate decides: a block that is pressed touches, a block that is lifted
+// leaves.
 TEST(ClosedForms, RateOfTheNormalForceDecidesWhereItIsZero) {
   const auto height = [](const std::string& force) {
     const auto m = contact_motion(R"toml(coordinates = ["z"]
@@ -180,7 +183,7 @@ force = [{on = "block", vector = ")toml" +
   EXPECT_EQ(height("-t^2"), 0);
 }
 
-// A ball on a sphere; what else holds it is the mutual slip `slip`.
+// A ball on a sphere. `keys` belong to the contact, whose slip velocity is `slip`; `more` holds further sections.
 std::string sphere(const std::string& keys, const std::string& more) {
   return "coordinates = [\"x\", \"z\", \"phi\"]\nparameters = {m = 1, R = 1, r = 0.25, g = 9.81, J = \"2/5*m*r^2\"}\n"
          "define.d = \"sqrt(x^2 + z^2)\"\ndefine.slip = \"(z*vel(body, C - r*C/d).x - x*vel(body, C - r*C/d).z)/d\"\n" +
@@ -193,7 +196,7 @@ conditions = ["x^2 + z^2 = (R+r)^2"]
 }
 
 TEST(ClosedForms, BallLeavesASphere) {
-  // The cosine of the angle at which it leaves, in relation to that of the start.
+  // The cosine of the angle at which the ball leaves, divided by the cosine at the start.
   const auto leaves = [&](const std::string& keys, const std::string& more) {
     const auto m = contact_motion(sphere(keys, more), 3);
     EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
@@ -240,8 +243,8 @@ initial = {x = "h"}
   EXPECT_GT(misfit(contact_motion(text, 5, {{"e", "0.71"}})), 1e-3);  // the mutant
 }
 
-// A sliding body loses mu times all impulses of its impacts, those that are summed up included: (1 + e)/(1 - e) times its
-// first velocity. In two directions it keeps its direction.
+// A sliding body loses mu times the impulses of all impacts, also of those that are summed up: (1 + e)/(1 - e) times
+// its first velocity. A body that slides in two directions keeps its direction.
 TEST(ClosedForms, FrictionOfImpactsThatAddUp) {
   const std::string text = R"toml(coordinates = ["x", "y", "z"]
 parameters = {e = 0.5, mu = 0.2, g = 9.81}
@@ -256,7 +259,7 @@ initial = {z = 1, "x'" = 4, "y'" = 3}
     const auto m =
         contact_motion(test::replaced(test::replaced(text, "SLIP", slip), "ALONG", along), 2, {{"mu", friction}});
     EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
-    // All impulses of the floor carry the weight from the start to the end.
+    // The impulses of the floor together carry the weight from the start to the end.
     const double lost = mu * g * 2;
     EXPECT_GT(2, fall * (1 + e) / (1 - e));
     return std::abs(m.last("x'") - share * (speed - lost));
@@ -266,7 +269,7 @@ initial = {z = 1, "x'" = 4, "y'" = 3}
   EXPECT_GT(misfit("x'*ex", "[\"ex\"]", 4, 1, "0.20001"), 1e-5);  // the mutant
 }
 
-// Times scaled by T: the same motion in other units has the same numbers of impacts and the same places.
+// In other units, with times scaled by T, the same motion has the same numbers of impacts and the same places.
 TEST(ClosedForms, ImpactsThatAddUpDoNotDependOnTheUnitOfTime) {
   const auto falls = [](const char* T, const Rational& to) {
     const auto m = contact_motion(R"toml(coordinates = ["x", "z"]
@@ -287,8 +290,9 @@ initial = {z = 1, "x'" = "4/T"}
   EXPECT_NEAR(seconds.first, slow.first, 1e-13);
 }
 
-// A box that rocks from corner to corner without rebound (Housner 1963): at each impact the spin changes by the factor r = 1
-// - 3 b^2/(2 (a^2 + b^2)) with the half width b, and half a swing lasts twice the time in which the box falls back.
+// A box that rocks from corner to corner without rebound (Housner 1963): at each impact the spin changes by the factor
+// r = 1 - 3 b^2/(2 (a^2 + b^2)) with the half width b, and half a swing lasts twice the time in which the box falls
+// back.
 TEST(ClosedForms, RockingBoxComesToRest) {
   const std::string text = R"toml(coordinates = ["x", "z", "phi"]
 parameters = {m = 1, b = 0.2, a = 0.3, g = 9.81, J = "m*(a^2 + b^2)/3", w = 0.05}
@@ -319,7 +323,8 @@ phi = 0
     EXPECT_FALSE(rests.empty());
     return std::pair{hits, rests.empty() ? 0 : rests[0]};
   };
-  // About a corner phi'' = -3 g (b cos phi - a sin phi)/(4 (a^2 + b^2)), for the small angles of the last swings linear.
+  // About a corner phi'' = -3 g (b cos phi - a sin phi)/(4 (a^2 + b^2)), for the small angles of the last swings
+  // linear.
   const auto ratio = [](const std::vector<double>& hits) {
     const std::size_t n = hits.size() - 3;
     return (hits[n] - hits[n - 1]) / (hits[n - 1] - hits[n - 2]);
@@ -327,13 +332,13 @@ phi = 0
   const double r = 1 - 3 * 0.04 / (2 * 0.13);
   const auto [hits, rest] = hits_of("0.2");
   EXPECT_NEAR(ratio(hits), r, 1e-4);
-  // What is left after an impact is a geometric series, up to the angles of its swings.
+  // The times after an impact are a geometric series, up to the angles of the swings.
   const std::size_t n = hits.size() - 3;
   EXPECT_NEAR(rest, hits[n] + (hits[n] - hits[n - 1]) * r / (1 - r), 1e-7);
   EXPECT_GT(std::abs(ratio(hits_of("0.22").first) - r), 1e-2);  // the mutant
 }
 
-// Every time that is asked for has its row, and one only, where the motion changes its mode there and where it ends.
+// Every requested time has exactly one row, also if the motion changes its mode or ends there.
 TEST(ClosedForms, RowsAtTheTimesOfEvents) {
   const std::string text = R"toml(coordinates = ["x"]
 parameters = {h = 5}
@@ -369,12 +374,12 @@ phi = )toml" +
          std::to_string(angle) + "\n\"phi'\" = " + std::to_string(spin) + "\n";
 }
 
-// The effective mass 1/m (1 + 3 c^2 - 3 mu s c) of the tip vanishes at the critical angle, which exists from mu = 4/3 on
-// (Génot and Brogliato 1999).
+// The effective mass 1/m (1 + 3 c^2 - 3 mu s c) of the tip vanishes at the critical angle, which exists from mu = 4/3
+// on (Génot and Brogliato 1999).
 TEST(ClosedForms, PainleveRodEndsByName) {
   const double mu = 1.4;
   const auto factor = [mu](double a) { return 1 + 3 * std::cos(a) * std::cos(a) - 3 * mu * std::sin(a) * std::cos(a); };
-  // Roots of 4 - 3 mu tan + tan^2.
+  // The critical angle is a root of 4 - 3 mu tan + tan^2.
   const double root = std::atan((3 * mu - std::sqrt(9 * mu * mu - 16)) / 2);
   ASSERT_NEAR(factor(root), 0, 1e-14);
   for (const double off : {-1e-3, 1e-3}) {
@@ -385,7 +390,7 @@ TEST(ClosedForms, PainleveRodEndsByName) {
   }
 }
 
-// A tippe top: its center of mass lies below the middle of its sphere at the start, and above it in the end.
+// The centre of mass of a tippe top lies below the middle of its sphere at the start and above it at the end.
 TEST(ClosedForms, TippeTopTurnsOver) {
   const std::string text = R"toml(coordinates = ["x", "y", "z", "psi", "theta", "phi"]
 parameters = {m = 0.006, R = 0.015, a = 0.006, I1 = 8e-7, I3 = 7e-7, g = 9.81, mu = 0.03}
@@ -432,8 +437,8 @@ conditions = ["O.z = R"]
   EXPECT_LT(turn("0"), 2.9);  // the mutant
 }
 
-// Where a slip with two components ends, round-off tells its direction. The rows up to there are continuous, and none is
-// said to be wrong.
+// Round-off determines the direction of a slip with two components at its end. The rows up to the end are continuous,
+// and no note calls a row wrong.
 TEST(ClosedForms, RowsUpToTheEndOfASlip) {
   const std::string hoop = R"toml(
 coordinates = ["x", "y", "z", "psi", "theta", "phi"]
@@ -453,7 +458,7 @@ theta = 1.3
     for (const Warning& w : m.report.warnings) EXPECT_EQ(w.message.find("rows differ"), std::string::npos) << w.message;
     const std::vector<double> ends = times(m, "floor.sticks");
     ASSERT_FALSE(ends.empty());
-    std::vector<std::array<double, 2>> seen;  // the time and the acceleration, while it slips
+    std::vector<std::array<double, 2>> seen;  // time and acceleration of the rows with slip
     for (std::size_t k = 0; k < m.rows.rows().size() && m.number(k, "t") <= ends[0]; ++k)
       if (m.number(k, "floor.mode") == 1) seen.push_back({m.number(k, "t"), m.number(k, "x''")});
     ASSERT_GT(seen.size(), 3U);
@@ -462,7 +467,7 @@ theta = 1.3
   }
 }
 
-// Impacts at t = 1 and 2 with the speeds 1 and 1/2, where the table ends; x'' = 2 z.
+// The body strikes at t = 1 and 2 with the speeds 1 and 1/2, at z = 0, where the table ends; x'' = 2 z.
 TEST(ClosedForms, ABodyBouncesWhereATableEnds) {
   const std::string text = R"toml(
 coordinates = ["x", "z"]
@@ -479,7 +484,7 @@ initial = {z = 0.5}
   EXPECT_NEAR(m.last("x'"), 2 / 3.0 + 1 / 12.0, 1e-11);
 }
 
-// Gravity that varies lets the ratio of intervals vary; the limit is that of the recursion in 40 digits.
+// Varying gravity lets the ratio of intervals vary; the limit is computed by the recursion in 40 digits.
 TEST(ClosedForms, ImpactsUnderVaryingGravityAddUpToTheirLimit) {
   const auto m = contact_motion(R"toml(coordinates = ["z"]
 parameters = {m = 1, e = 0.8}
@@ -490,11 +495,12 @@ initial = {z = 0.2}
 )toml",
                                 3);
   ASSERT_EQ(times(m, "f.rests").size(), 1U);
-  // From 1e-7 of the time before the limit on, the ratio counts as constant: it varies by as much, and changes a sum of 1e-7.
+  // From 1e-7 of the time before the limit on, the ratio counts as constant: its changes are of the same size and alter
+  // a sum of 1e-7.
   EXPECT_NEAR(times(m, "f.rests")[0], 1.8021113327077998, 1e-12);
 }
 
-// A slip without friction that ends the motion as it passes zero goes on.
+// A slip without friction reverses at zero, also if an event stops the motion there.
 TEST(ClosedForms, SlipWithoutFrictionReversesWhereItEndsTheMotion) {
   const auto m = contact_motion(R"toml(coordinates = ["x", "z"]
 parameters = {m = 1, g = 10, mu = 0}
@@ -532,7 +538,8 @@ initial = {z = "h"}
   EXPECT_TRUE(contact_motion(text, Rational(1, 2)).report.notes.empty());
 }
 
-// A wheel that spins in the corner of a floor and a wall stops in both contacts, of which one bears no load then.
+// A wheel that spins in the corner of a floor and a wall comes to rest in both contacts; one of them bears no load
+// then.
 TEST(ClosedForms, WheelInACornerSticksAtFloorAndWall) {
   const auto m = contact_motion(R"toml(coordinates = ["x", "z", "p"]
 parameters = {m = 2, R = 0.2, g = 9.81, mu1 = 0.25, mu2 = 0.4, w0 = -60}

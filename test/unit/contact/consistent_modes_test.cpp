@@ -61,7 +61,8 @@ TEST(ContactLaw, BlockThatIsLiftedOpens) {
   EXPECT_EQ(list[0].modes[0].touch, Touch::open);
 }
 
-// Contacts at rest in space, of coordinates in which the mass matrix is 1, with rates without forces.
+// Contacts at rest in space, in coordinates whose mass matrix is 1; `rates` are the accelerations of the rows without
+// forces.
 static ContactProblem at_rest_in_space(const std::vector<std::vector<long double>>& rows,
                                        const std::vector<long double>& rates, long double friction) {
   ContactProblem p;
@@ -83,8 +84,8 @@ static ContactProblem at_rest_in_space(const std::vector<std::vector<long double
   return p;
 }
 
-// The corner of a box that hardly slips: only at angles very near to that of the slip does its rate have this direction. The
-// forces are those of an iteration that projects them on the cone of friction.
+// The corner of a box hardly slips: its acceleration has the direction of the slip only at angles very near to it. An
+// iteration that projects the forces on the cone of friction gives the reference.
 TEST(ContactLaw, SlipThatHardlyBeginsIsFound) {
   const auto list = consistent_modes(at_rest_in_space({{-2.401L, 0, 0}, {0.346L, 1.964L, 0}, {0.624L, -0.735L, 1.151L}},
                                                       {-10, 0.875L, 0.26L}, 0.892L));
@@ -94,7 +95,8 @@ TEST(ContactLaw, SlipThatHardlyBeginsIsFound) {
   EXPECT_NEAR(static_cast<double>(list[0].modes[0].direction[0]), -0.004068133078026337 / 0.00990943, 1e-5);
 }
 
-// A rigid body that rests on one corner is struck at another one. Contacts at rest have a solution for each friction.
+// A rigid body that rests on one corner is struck at another one. Contacts at rest have a solution for every
+// coefficient of friction.
 TEST(ContactLaw, BodyThatRestsOnOneCornerIsStruckAtAnother) {
   std::mt19937 random(5);
   const auto number = [&](long double from, long double to) {
@@ -117,8 +119,8 @@ TEST(ContactLaw, BodyThatRestsOnOneCornerIsStruckAtAnother) {
   }
 }
 
-// A box of mass 1 that slides on one of its faces and turns. Its loads have one part that exerts nothing along the gaps; friction
-// makes the motion depend on it, and the least part is taken.
+// A box of mass 1 that slides on one of its faces and turns. One part of its loads exerts nothing along the gaps;
+// friction makes the motion depend on this part, and the least one is taken.
 static ContactProblem sliding_box(const std::array<long double, 3>& half, const std::array<long double, 3>& v,
                                   long double friction) {
   ContactProblem p;
@@ -154,7 +156,7 @@ TEST(ContactLaw, BoxThatSlidesOnItsFaceHasOneMotion) {
     const auto list = consistent_modes(sliding_box(half, v, number(0.1L, 0.9L)));
     ASSERT_EQ(list.size(), 1U) << k;
     const auto& N = list[0].normal;
-    // The part without effect has the sum of opposite corners against that of the others.
+    // The part without effect is the sum of the loads of two opposite corners minus that of the others.
     const long double part = std::abs(N[0] - N[1] - N[2] + N[3]);
     if (part < 1e-12L) continue;
     ++on_three;
@@ -163,8 +165,8 @@ TEST(ContactLaw, BoxThatSlidesOnItsFaceHasOneMotion) {
   EXPECT_GT(on_three, 5U);
 }
 
-// An impact in space on one contact has a solution for every friction (the rows are independent): the directions of slip
-// are found, whatever the mass matrix.
+// An impact in space on one contact has a solution for every friction, since the rows are independent: a direction of
+// slip is found for any mass matrix.
 TEST(ContactLaw, ImpactInSpaceHasADirectionOfSlip) {
   std::mt19937 random(7);
   const auto number = [&] { return static_cast<long double>(random()) / 2147483648.0L - 1; };

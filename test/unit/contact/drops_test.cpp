@@ -1,5 +1,5 @@
-// Random drops of boxes, balls and discs: the energy never grows, no gap is negative, and each motion ends by name. `./dev
-// long` (ANHOLON_LONG=1) computes 10^4 of them.
+// Random drops of boxes, balls and discs: the energy never grows, no gap is negative, and each motion ends by name.
+// `./dev long` (ANHOLON_LONG=1) computes 10^4 of them.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -30,7 +30,7 @@ class Numbers {
 
 std::string number(const std::string& key, double x) { return key + " = " + std::to_string(x) + "\n"; }
 
-// A body in the plane y = 0 over a floor, beside a wall, or in a corner of both. Of a box all four corners may touch.
+// A body in the plane y = 0 over a floor, beside a wall, or in a corner of both. All four corners of a box may touch.
 std::string drop(std::uint64_t seed, const std::string& law = "newton") {
   Numbers random(seed);
   const int kind = static_cast<int>(seed % 3);
@@ -103,7 +103,7 @@ TEST(Drops, EnergyNeverGrowsAndNothingPenetrates) {
   all(again, 1);
   std::size_t finished = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    // Both are round-off: an energy is about 20, a place about 1.
+    // Both bounds are round-off: energies are about 20, places about 1.
     EXPECT_LE(found[k].gains, 1e-11) << k + 1;
     EXPECT_LE(found[k].depth, 1e-12) << k + 1;
     const Outcome& o = found[k].outcome;
@@ -118,7 +118,7 @@ TEST(Drops, EnergyNeverGrowsAndNothingPenetrates) {
         << k + 1;
 }
 
-// Poisson's law raises no energy: all drops finish.
+// Poisson's law never raises the energy, so all drops finish.
 TEST(Drops, PoissonsLawFinishes) {
   for (std::uint64_t k = 1; k <= 40; ++k) {
     const Found f = look_at(drop(k, "poisson"));
@@ -128,8 +128,9 @@ TEST(Drops, PoissonsLawFinishes) {
   }
 }
 
-// Drops in which a corner is pushed below the depth of its hit where another one comes to rest, and discs that spin in the
-// corner of a floor and a wall: friction of the floor drives them against the wall, and the impacts there come to rest.
+// In some drops a corner is pushed below the depth of its hit while another one comes to rest. In others a disc spins
+// in the corner of a floor and a wall: friction of the floor drives it against the wall, and its impacts there come to
+// rest.
 TEST(Drops, HardOnesFinish) {
   for (const std::uint64_t k : {1001025, 1001268, 1002563, 1002635}) {
     const Found f = look_at(drop(k));
@@ -146,7 +147,7 @@ TEST(Drops, HardOnesFinish) {
   EXPECT_NEAR(m.last("wall.normal"), mu * N, 1e-12);
 }
 
-// A box in space that has turned over an edge lands on a face: the products in the rate of its quaternion's norm are all
+// A box in space turns over an edge and lands on a face; all products in the rate of its quaternion's norm are
 // round-off then.
 TEST(Drops, ABoxInSpaceLandsOnAFace) {
   const std::string J[] = {"0.15052933333333332", "0.11998166666666665", "0.11174833333333334"};
@@ -244,8 +245,8 @@ void expect_a_motion(const BoxInSpace& of, const Rational& to) {
     EXPECT_LE(m.number(k, "energy"), m.number(k - 1, "energy") + 1e-11) << k;
 }
 
-// After the impact of an edge the box turns about an axis, and the rates of two components of its quaternion are round-off
-// that its norm needs.
+// After the impact of an edge the box turns about an axis. Two components of its quaternion have rates of the size of
+// round-off, which the norm needs.
 TEST(Drops, ABoxInSpaceKeepsTheNormOfItsQuaternion) {
   expect_a_motion({{0.284, 0.768, 0.506},
                    0.6,
@@ -257,8 +258,8 @@ TEST(Drops, ABoxInSpaceKeepsTheNormOfItsQuaternion) {
                   Rational(11, 10));
 }
 
-// The slips of the four corners of a rod end within 1e-10 s, two of them first: they begin again without turning the others
-// back, which would let friction drive the rod.
+// The slips of the four corners of a rod end within 1e-10 s, two of them first. These begin again without reversing the
+// others, whose friction would drive the rod.
 TEST(Drops, ARodInSpaceComesToRestWithoutBeingDriven) {
   expect_a_motion({{0.04, 0.04, 0.554},
                    0.168,
@@ -270,7 +271,7 @@ TEST(Drops, ARodInSpaceComesToRestWithoutBeingDriven) {
                   Rational(6, 10));
 }
 
-// The mutants: a floor that is pushed up lifts the body, whose energy grows.
+// The mutants: a rising floor lifts the body, whose energy grows.
 TEST(Drops, MutantsAreFound) {
   for (std::uint64_t k = 1; k <= 6; ++k) {
     std::string lifted = drop(3 * k - 1);

@@ -1,4 +1,5 @@
-// Impacts in units, and at times, in which a gap has not the size of 1: its round-off is that of the way and of the time.
+// Impacts in units, and at times, in which gaps are not of the size 1: the round-off of a gap depends on the size of
+// positions and times.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@ namespace far_from_zero_test {
 
 using test::contact_motion;
 
-// x = c + (a - c) cos(w t) from a, reflected where x = 0: the hits are 2 acos(-c/(a - c))/w apart.
+// x = c + (a - c) cos(w t) from a, reflected at x = 0: the hits are 2 acos(-c/(a - c))/w apart.
 std::string spring(const std::string& scale, const std::string& middle, const std::string& start) {
   return R"toml(
 coordinates = ["x"]
@@ -38,7 +39,7 @@ TEST(FarFromZero, NoImpactIsLostInAnyUnit) {
     }
 }
 
-// What is round-off of a gap at the start depends on the size of the model.
+// The size of the model decides whether a gap at the start is round-off.
 TEST(FarFromZero, APenetrationAtTheStartIsToldInAnyUnit) {
   const auto begins = [](const std::string& scale, const std::string& depth) {
     return contact_motion("coordinates = [\"x\"]\nparameters = {scale = " + scale + ", depth = " + depth + R"toml(}
@@ -71,7 +72,7 @@ TEST(FarFromZero, NoImpactIsLostLate) {
     }
 }
 
-// The toy jams, slips and leaves its pole: events that are no impacts come late, too.
+// The toy jams, slips and leaves its pole: late events that are no impacts are located as well.
 TEST(FarFromZero, AWoodpeckerPecksLate) {
   std::string text = test::shipped_text("contacts/woodpecker");
   const std::size_t simulate = text.find("[simulate]");

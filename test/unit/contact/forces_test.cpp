@@ -1,4 +1,4 @@
-// Forces of contacts in formulas of the model, against closed forms. Each test has a mutant or a second way.
+// Forces of contacts in formulas of the model, compared with closed forms. Each test has a mutant or a second way.
 #include <array>
 #include <cmath>
 
@@ -15,8 +15,7 @@ using test::times;
 
 void expect_near(double a, double b, double relative) { EXPECT_LE(std::abs(a - b), relative * std::abs(b)) << a << b; }
 
-// lambda.NAME and lambda.NAME.t1, of bodies on a slope of the angle 0.3 that falls towards
-// +x.
+// lambda.NAME and lambda.NAME.t1 of bodies on a slope of the angle 0.3 that falls towards +x.
 std::string on_slope(const std::string& shape, const std::string& more) {
   return R"toml(coordinates = ["x", "z", "phi"]
 frame.B = "roty(phi)"
@@ -60,7 +59,7 @@ TEST(Forces, OfABallThatRolls) {
     expect_near(m.last("N"), w * std::cos(0.3), 1e-14);
     expect_near(m.last("both.z"), 2 * w * std::cos(0.3), 1e-14);
     EXPECT_EQ(m.last("both.x"), m.last("T"));
-    // By Newton's law, without any formula of contacts.
+    // Newton's law gives the force without formulas of contacts.
     expect_near(m.last("all.x"), m.last("T"), 1e-13);
     expect_near(m.last("all.z"), m.last("N"), 1e-13);
     return std::abs(m.last("T") + 2.0 / 7 * w * std::sin(0.3));
@@ -106,7 +105,7 @@ TEST(Forces, QuotientOfForcesIsNotANumberWhileTheContactIsOpen) {
   EXPECT_TRUE(std::isnan(m.last("used")));
 }
 
-// In space the friction of a slip has two components, and a moment of resistance has its own.
+// In space the friction of a slip has two components, and a moment of resistance has a name of its own.
 TEST(Forces, InSpace) {
   const auto m = contact_motion(R"toml(coordinates = ["x", "y", "z", "q0", "q1", "q2", "q3"]
 gravity.field = "-9.81*ez"
@@ -142,7 +141,7 @@ q0 = 1
   expect_near(m.number(0, "M"), -0.003 * w, 1e-14);
 }
 
-// In a mode with ideal forces the model of that mode moves as the contacts do, with their forces as multipliers.
+// In a mode with ideal forces, the model of this mode moves as the contacts do, and its multipliers are their forces.
 TEST(Forces, OfTheModelOfAMode) {
   const auto last = [](const std::vector<Touch>& touches, const char* inertia) {
     const std::string text = on_slope("ball(0.1)", "[initial]\nz = 0.1\n");
@@ -172,7 +171,7 @@ TEST(Forces, OfTheModelOfAMode) {
   EXPECT_THROW(last({Touch::slips}, "0.1"), Failure);
 }
 
-// A constraint of one side has a force by the same name.
+// The force of a one-sided constraint has the name of the constraint.
 TEST(Forces, OfAConstraintOfOneSide) {
   const auto m = contact_motion(R"toml(coordinates = ["z"]
 gravity.field = "-9.81*ez"

@@ -1,4 +1,4 @@
-// Impacts by Poisson's and by Newton's law: where they agree, where they differ, and that Poisson's never raises the energy.
+// Impacts by Poisson's and by Newton's law: some agree, some differ, and Poisson's law never raises the energy.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -50,8 +50,8 @@ struct After {
   double gap_rate, slip;
 };
 
-// Routh's way: the impulse N of the floor grows, friction mu N works against the slip until it ends, and then holds. It
-// solves no system of equations. The friction must suffice to hold.
+// Computes the impact by Routh's method: the impulse N of the floor grows, friction mu N opposes the slip until the
+// slip ends, and then holds. No system of equations is solved. The friction must suffice to hold.
 After by_routh(const Strike& s) {
   const double c = std::cos(s.angle), d = std::sin(s.angle);
   const double nn = 1 + 3 * c * c, tt = 1 + 3 * d * d, nt = 3 * c * d;  // velocities of the tip by unit impulses
@@ -59,7 +59,7 @@ After by_routh(const Strike& s) {
   const double against = s.slip > 0 ? -s.friction : s.friction;
   const double ends = -s.slip / (nt + against * tt);  // the impulse at which the slip ends
   const double gap_rate = s.gap_rate + ends * (nn + against * nt);
-  EXPECT_LT(gap_rate, 0);  // it ends within the compression
+  EXPECT_LT(gap_rate, 0);  // the slip ends within the compression
   const double held = nn - nt * nt / tt;
   const double compression = ends - gap_rate / held;
   return {held * s.restitution * compression, 0};
@@ -77,7 +77,7 @@ TEST(ImpactLaws, ObliqueRodWithFrictionFollowsPoisson) {
     const After law = by_routh(s), is = strike(s, "poisson");
     EXPECT_NEAR(is.gap_rate, law.gap_rate, 1e-14);
     EXPECT_NEAR(is.slip, 0, 1e-14);
-    // The mutant: Newton's law has another velocity.
+    // The mutant: Newton's law gives another velocity.
     const After newton = strike(s, "newton");
     EXPECT_NEAR(newton.gap_rate, -s.restitution * s.gap_rate, 1e-14);
     EXPECT_GT(std::abs(newton.gap_rate - law.gap_rate), 1e-2);
@@ -103,8 +103,8 @@ TEST(ImpactLaws, TheyAgreeWithoutFrictionAndInASteadySlip) {
     EXPECT_NEAR(newton.report.events[k].t.value, poisson.report.events[k].t.value, 1e-13);
 }
 
-// Over a grid of angles, slips and frictions: Newton's law raises the energy in some cases, which it refuses, and Poisson's
-// in none.
+// Over a grid of angles, slips and frictions: Newton's law raises the energy in some cases, which it refuses, and
+// Poisson's in none.
 TEST(ImpactLaws, PoissonNeverRaisesTheEnergy) {
   std::size_t newton_raises = 0, cases = 0;
   for (const double angle : {-1.3, -0.8, -0.3, 0.2, 0.6, 1.0, 1.4})
@@ -116,7 +116,7 @@ TEST(ImpactLaws, PoissonNeverRaisesTheEnergy) {
           newton_raises += newton.report.outcome.message.find("raise the energy") != std::string::npos;
           const auto poisson = contact_motion(rod(s, "poisson"), Rational(1, 1000));
           ASSERT_TRUE(poisson.report.outcome.ok()) << angle << " " << slip << ": " << poisson.report.outcome.message;
-          // Without spin the body moves as its tip does.
+          // Without spin the body moves with the velocity of its tip.
           const double before = (slip * slip + 1) / 2;
           EXPECT_LE(poisson.number(0, "energy"), before * (1 + 1e-14)) << angle << " " << slip;
           EXPECT_GE(poisson.number(0, "gap_rate"), 0);
@@ -126,7 +126,7 @@ TEST(ImpactLaws, PoissonNeverRaisesTheEnergy) {
   EXPECT_GT(newton_raises, 0U);
 }
 
-// Three balls that touch, the first of which strikes the others: the laws agree.
+// Three balls touch, and the first strikes the others: the laws agree.
 TEST(ImpactLaws, SeveralContactsAtOneTime) {
   for (const char* law : {"newton", "poisson"}) {
     std::string text = R"toml(coordinates = ["a", "b", "c"]
@@ -138,7 +138,8 @@ contact = [{name = "first", gap = "b - a", restitution = 0.5, impact = "LAW"}, {
     const auto m = contact_motion(text, 1);
     ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
     EXPECT_NEAR(m.last("a'") + m.last("b'") + m.last("c'"), 1, 1e-15);
-    // A compression makes all velocities 1/3, by the impulses 2/3 and 1/3, and an expansion adds half of them.
+    // The compression has the impulses 2/3 and 1/3 and gives all balls the velocity 1/3; the expansion adds half of
+    // these impulses.
     EXPECT_NEAR(m.last("a'"), 0, 1e-15);
     EXPECT_NEAR(m.last("b'"), 0.5, 1e-15);
     EXPECT_NEAR(m.last("c'"), 0.5, 1e-15);

@@ -1,5 +1,4 @@
-// The work of contacts as a state: energy and work balance through slipping,
-// sticking and impacts.
+// A state integrates the work of contacts: energy and work balance through slipping, sticking and impacts.
 #include <algorithm>
 #include <cmath>
 
@@ -76,10 +75,11 @@ TEST(ImpactStates, BalanceTheEnergy) {
     EXPECT_LT(m.last("rubbed"), -0.05) << law;
     EXPECT_LT(m.last("struck"), -0.5) << law;
     EXPECT_LT(spread(m, "balance"), 1e-12) << law;
-    // The rod comes to rest when its impacts have all but added up: the impulses still to come are no more than 1e-7 of the others.
+    // The rod comes to rest when its impacts have nearly added up: the impulses still to come are at most 1e-7 of the
+    // others.
     EXPECT_LT(spread(m, "momentum"), 1e-6) << law;
     EXPECT_GT(spread(m, "energy"), 0.5);
-    // The mutant: a rod of another inertia than that of the energy.
+    // The mutant: the inertia of the rod differs from that in the formula of the energy.
     const auto other = contact_motion(
         test::replaced(text, "inertia = [\"m*l^2/3\", \"m*l^2/3\"", "inertia = [\"m*l^2/3\", \"m*l^2/4\""), 2);
     EXPECT_GT(spread(other, "balance"), 1e-3);

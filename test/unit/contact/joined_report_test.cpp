@@ -30,7 +30,7 @@ TEST(JoinedReport, EventsOfOneInstantAreListedByCause) {
   for (const char* name : {"floor.rests", "floor.rolling.stops", "half", "floor.sticks", "floor.hits"})
     joined.event(name, 3);
   joined.event("floor.hits", 4);
-  // Events of the model, and those of other instants, keep their places.
+  // Events of the model and events of other instants keep their places.
   const std::vector<std::string> wanted = {"floor.rests", "floor.sticks", "floor.hits",  "floor.rolling.stops",
                                            "half",        "floor.sticks", "floor.rests", "floor.hits"};
   EXPECT_EQ(names(joined.report({}, 5, 0)), wanted);
@@ -49,7 +49,7 @@ TEST(JoinedReport, AnImpactIsToldWithItsOwnEvent) {
   EXPECT_TRUE(r.events[1].changes.empty());
 }
 
-// Progress counts the steps of all segments, not those of the one under way.
+// Progress counts the steps of all segments, not only those of the present one.
 TEST(JoinedReport, ProgressIsThatOfTheWholeMotion) {
   std::vector<std::size_t> steps;
   std::vector<double> t;
@@ -71,7 +71,7 @@ initial = {z = 1.1}
   EXPECT_EQ(steps.back(), m.report.steps);
 }
 
-// The impact of one foot opens the one that stood.
+// The impact of one foot opens the contact of the standing foot.
 TEST(JoinedReport, AnImpactOpensAnotherContact) {
   const auto wheel = [](const std::string& restitution) {
     return test::contact_motion(R"toml(coordinates = ["x", "z", "phi"]

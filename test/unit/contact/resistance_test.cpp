@@ -1,5 +1,5 @@
-// Resistance to rolling and drilling against closed forms. Each test has a mutant, a model of other constants, that does
-// not fit.
+// Resistance to rolling and drilling, compared with closed forms. Each test has a mutant, a model with other constants,
+// whose motion differs.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@ using test::times;
 
 constexpr double g = 9.81, R = 0.11;
 
-// A ball or a disc on a slope of the angle `a` that falls towards +x, in the plane y = 0. Its axis z is across
-// the plane, as a disc is turned about it.
+// A ball or a disc on a slope of the angle `a` that falls towards +x, in the plane y = 0. Its axis z is normal to the
+// plane, since a disc turns about it.
 std::string rolls(const std::string& inertia, const std::string& shape, const std::string& more) {
   return R"toml(coordinates = ["x", "z", "phi"]
 frame.B = "roty(phi)*rotx(pi/2)"
@@ -68,7 +68,7 @@ TEST(Resistance, BallThatRollsStopsAfterItsPath) {
     EXPECT_EQ(m.last("phi'"), 0);
     EXPECT_EQ(m.last("floor.rolling.mode"), 2);
     EXPECT_LT(m.report.power, 1e-10);
-    // All energy goes into the moment, whose size is delta m g up to the stop.
+    // The moment, whose size is delta m g up to the stop, takes all energy.
     const double energy = 2 * 1.5 * 1.5 * (1 + k) / 2;
     EXPECT_LE(std::abs(-m.number(0, "floor.rolling.moment") * m.last("phi") - energy), 1e-10 * energy);
     return std::max(std::abs(stops.at(0) * slow / 1.5 - 1), std::abs(m.last("x") / path - 1));
@@ -101,12 +101,12 @@ TEST(Resistance, BallRestsOnASlopeUpToItsAngle) {
   }
 }
 
-// A torque that grows begins to roll the ball against friction and resistance, and what it does then.
+// A growing torque begins to roll the ball against friction and resistance.
 TEST(Resistance, BallIsSetRollingByAGrowingPush) {
   const std::string push = "[[force]]\non = \"wheel\"\nvector = \"t*ex\"\n";
   const auto m = contact_motion(rolls(kBall, "ball(R)", push), 3);
   ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
-  // The push t R about the lowest point passes delta m g.
+  // The moment t R of the push about the lowest point passes delta m g.
   const double begin = 0.004 * 2 * g / R;
   const auto starts = times(m, "floor.rolling.starts");
   ASSERT_EQ(starts.size(), 1U);
@@ -147,7 +147,7 @@ q0 = 1
 )toml" + start;
 }
 
-// About the vertical, the moment drill m g stops the spin w at w J/(drill m g).
+// The moment drill m g about the vertical stops the spin w in the time w J/(drill m g).
 TEST(Resistance, SpinningBallStops) {
   const auto stop = [](const std::string& drill) {
     const auto m = contact_motion(ball("\"q3'\" = 4\n"), 20, {{"drill", drill}});
@@ -163,8 +163,8 @@ TEST(Resistance, SpinningBallStops) {
   EXPECT_GT(std::abs(stop("0.0031") - formula), 1e-2);  // the mutant
 }
 
-// A ball that slips askew with spin about all axes comes to rest: slip ends first, then rolling and drilling. Its energy never
-// grows, and power and rates agree.
+// A ball that slips obliquely with spin about all axes comes to rest: first the slip ends, then rolling and drilling.
+// Its energy never grows, and power and rates agree.
 TEST(Resistance, BallThrownAskewComesToRest) {
   const auto m = contact_motion(ball("\"x'\" = 2\n\"y'\" = 0.3\n\"q1'\" = 3\n\"q2'\" = -5\n\"q3'\" = 4\n"), 60);
   ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
@@ -172,7 +172,7 @@ TEST(Resistance, BallThrownAskewComesToRest) {
   ASSERT_EQ(times(m, "floor.rolling.stops").size(), 1U);
   ASSERT_EQ(times(m, "floor.drilling.stops").size(), 1U);
   EXPECT_LT(m.report.power, 1e-10);
-  // From the slip on, the ball rolls straight with delta g/(1.4 R).
+  // From the end of the slip on, the ball rolls straight with the deceleration delta g/(1.4 R).
   const double begin = times(m, "floor.sticks")[0], end = times(m, "floor.rolling.stops")[0];
   for (std::size_t k = 0; k < m.rows.rows().size(); ++k)
     if (m.number(k, "t") == begin) {
@@ -186,8 +186,7 @@ TEST(Resistance, BallThrownAskewComesToRest) {
   EXPECT_LT(m.report.steps, 2000U);
 }
 
-// A ball in a bowl swings until the slope at which it stops is one that the moment holds. Each segment begins and ends at
-// rest.
+// A ball in a bowl swings until it stops at a slope on which the moment holds it. Each segment begins and ends at rest.
 TEST(Resistance, BallInABowlRestsNearItsLowestPoint) {
   const auto rest = [](const std::string& delta) {
     const auto m = contact_motion(R"toml(coordinates = ["x", "z", "phi"]
@@ -216,7 +215,7 @@ conditions = ["x^2 + z^2 = 0.9^2"]
     for (const char* column : {"x'", "z'", "phi'"}) EXPECT_LT(std::abs(m.last(column)), 1e-30) << column;
     EXPECT_EQ(m.last("bowl.mode"), 2);
     EXPECT_EQ(m.last("bowl.rolling.mode"), 2);
-    // tan of the slope, which holds up to delta/r.
+    // The tangent of the slope; the moment holds the ball up to delta/r.
     EXPECT_LT(std::abs(m.last("x") / m.last("z")), std::stod(delta) / 0.1);
     EXPECT_EQ(times(m, "bowl.rolling.stops").size(), 1U);
     return times(m, "bowl.rolling.reverses").size();
@@ -225,8 +224,8 @@ conditions = ["x^2 + z^2 = 0.9^2"]
   EXPECT_EQ(rest("0.006"), 2U);  // the mutant
 }
 
-// A ball on a smooth floor ends its turning: what the last jump leaves of the velocities of its quaternion is dropped as a
-// whole.
+// A ball on a smooth floor stops turning: the velocities of its quaternion that remain after the last jump are all set
+// to zero.
 TEST(Resistance, BallOnASmoothFloorEndsItsTurning) {
   const auto m = contact_motion(R"toml(
 coordinates = ["x","y","z","a","b","c","d"]
@@ -256,8 +255,8 @@ drilling_resistance = 0.00744
   EXPECT_LT(m.report.power, 1e-10);
 }
 
-// The last stop of a ball with quaternion coordinates leaves a rate along the quaternion that is larger than those that turn
-// the ball: the jump that stops it removes this rate, too.
+// The last stop of a ball with quaternion coordinates leaves a rate along the quaternion that is larger than those that
+// turn the ball: the jump that stops it removes this rate, too.
 TEST(Resistance, BallEndsRollingAndDrillingTogether) {
   const auto m = contact_motion(R"toml(
 coordinates = ["x","y","z","a","b","c","d"]
@@ -284,8 +283,9 @@ z = 0.1
   EXPECT_LT(m.report.power, 1e-10);
 }
 
-// A ball that spins is pulled along by a belt of the acceleration 2: it slips and rolls from the first row on. The slip ends at the
-// time 16/27, where rolling does not: friction accelerates the ball by mu g, and turns it with the arm R against the moment.
+// A belt with the acceleration 2 pulls a spinning ball along, which slips and rolls from the first row on. The slip
+// ends at the time 16/27, rolling does not: friction accelerates the ball by mu g and turns it with the arm R against
+// the moment.
 TEST(Resistance, BallThatABeltPullsAlong) {
   const auto ball = [](const std::string& belt, const std::string& resistance = "rolling_resistance = 0.0005",
                        const Rational& to = 1) {
@@ -307,7 +307,7 @@ initial = {a = 1, z = 0.1, conditions = ["angvel(s).z = 10", "angvel(s).x = 0", 
   ASSERT_EQ(times(m, "k.sticks").size(), 1U);
   EXPECT_NEAR(times(m, "k.sticks")[0], 16.0 / 27, 1e-12);
   EXPECT_EQ(m.report.events.size(), 1U);
-  // With drilling, rolling stays at rest where the slip ends: its velocity is round-off there, and so are the terms of it.
+  // With drilling, rolling stays at rest when the slip ends: its velocity and the terms of it are round-off.
   const auto held = ball("2*t*ex", "rolling_resistance = 0.05, drilling_resistance = 0.001", 3);
   ASSERT_TRUE(held.report.outcome.ok()) << held.report.outcome.message;
   ASSERT_EQ(times(held, "k.sticks").size(), 1U);

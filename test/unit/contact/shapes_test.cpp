@@ -11,7 +11,7 @@ namespace shapes_test {
 
 using test::contact_motion;
 
-// Whether two motions have the same coordinates and velocities at the end.
+// True if two motions have the same coordinates and velocities at the end.
 bool same(const test::Motion& a, const test::Motion& b, const std::vector<std::string>& coordinates) {
   EXPECT_TRUE(a.report.outcome.ok()) << a.report.outcome.message;
   EXPECT_TRUE(b.report.outcome.ok()) << b.report.outcome.message;
@@ -94,7 +94,7 @@ TEST(Shapes, CoinTouchesWithItsRim) {
                     contact_motion(coin(formula), Rational(3, 10)), all));  // the mutant
 }
 
-// Euler's disc, 8 cm wide and almost flat.
+// Euler's disc, 8 cm wide and nearly flat.
 test::Motion eulers_disc(const std::string& initial, const Rational& to) {
   return contact_motion(R"toml(coordinates = ["x", "y", "z", "psi", "theta", "phi"]
 parameters = {m = 0.4, R = 0.04, g = 9.81}
@@ -122,8 +122,8 @@ std::string rolling(const std::string& lean) {
          ")))\"\n\"phi'\" = \"-sqrt(4*g/(R*sin(" + lean + ")))*cos(" + lean + ")\"\n";
 }
 
-// Rolling takes the power delta m g Omega sin(theta) from the disc, so that theta falls as (t_f - t)^2, where
-// t_f = 3/2 sqrt(theta_0) R/delta sqrt(R/g). Where the disc lies flat its angles are singular, which is no paradox of
+// Rolling takes the power delta m g Omega sin(theta) from the disc, so theta falls as (t_f - t)^2 with t_f = 3/2
+// sqrt(theta_0) R/delta sqrt(R/g). The angles of the disc are singular when it lies flat; this is no paradox of
 // friction.
 TEST(Shapes, EulersDiscEndsWhereItsAnglesAreSingular) {
   const double lean = 3e-5, end = 1.5 * std::sqrt(lean) * 200 * std::sqrt(0.04 / 9.81);
@@ -140,8 +140,8 @@ TEST(Shapes, FlatDiscNamesItsContact) {
   EXPECT_NE(m.report.outcome.message.find("contact 'table'"), std::string::npos) << m.report.outcome.message;
 }
 
-// The disc sticks, and begins to slip against the friction that held it. The resistance to rolling turns this friction: a
-// direction found without the resistance leads to no consistent mode.
+// The disc sticks, and begins to slip against the friction that held it. The resistance to rolling turns this friction:
+// a direction found without the resistance leads to no consistent mode.
 TEST(Shapes, EulersDiscBeginsToSlipAgainstItsFriction) {
   const auto m = eulers_disc(R"toml(psi = 569.875976
 theta = 0.000106676556
@@ -159,8 +159,8 @@ z = "R*sin(0.000106676556)"
   EXPECT_GT(test::times(m, "table.slips").size(), 0U);
 }
 
-// A disc on a smooth floor rocks from one side of its rim to the other. It lies almost flat in between, where its gap needs all
-// digits; its energy and its spins about the vertical and about its axis stay.
+// A disc on a smooth floor rocks from one side of its rim to the other. In between it lies nearly flat, and its gap
+// needs all digits. Its energy and its spins about the vertical and about its axis are constant.
 TEST(Shapes, DiscRocksAlmostFlatOnASmoothFloor) {
   const auto changes = [](const char* mu, const Rational& to) {
     const auto m = contact_motion(R"toml(coordinates = ["x", "y", "z", "ps", "th", "ph"]
@@ -191,7 +191,7 @@ spin = "dot(angvel(disc), B.z)"
 )toml",
                                   to, {{"mu", mu}});
     EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
-    std::array<double, 3> found{};  // of the energy, of the spin, the least inclination
+    std::array<double, 3> found{};  // changes of energy and spin, least inclination
     found[2] = m.number(0, "th");
     for (std::size_t k = 0; k < m.rows.rows().size(); ++k) {
       found[0] = std::max(found[0], std::abs(m.number(k, "energy") - m.number(0, "energy")));
@@ -207,7 +207,7 @@ spin = "dot(angvel(disc), B.z)"
   EXPECT_GT(changes("0.1", Rational(1, 5))[0], 1e-4);  // the mutant
 }
 
-// A disc that falls flat has no point of its rim below the others, and does not fall through the floor.
+// A disc that falls flat has no lowest point of its rim, and does not fall through the floor.
 TEST(Shapes, ADiscThatLandsFlatEndsTheMotion) {
   const auto falls = [](const char* tilt) {
     return contact_motion(R"toml(coordinates = ["z", "e0", "e1"]
@@ -237,7 +237,7 @@ e1 = "sin(tilt/2)"
   EXPECT_TRUE(falls("0.1").ok()) << falls("0.1").message;  // the mutant
 }
 
-// A wheel with a thick tyre that sticks to the road moves as one that rolls by a constraint of its lowest point.
+// A wheel with a thick tyre that sticks to the road moves as a wheel whose lowest point a constraint lets roll.
 TEST(Shapes, TorusRollsAsByAConstraint) {
   const auto wheel = [](const std::string& contact) {
     return contact_motion(R"toml(coordinates = ["x", "y", "z", "psi", "theta", "phi"]
@@ -264,7 +264,7 @@ theta = 1.3
   const auto rolling = wheel("[[constraint]]\nname = \"rolling\"\nequation = \"vel(wheel, low) = 0\"\n");
   EXPECT_EQ(touching.last("road.mode"), 2);
   EXPECT_TRUE(same(touching, rolling, {"x", "y", "z", "psi", "theta", "phi"}));
-  // The mutant: a disc of the same height is another wheel.
+  // The mutant: a disc of the same height moves otherwise.
   EXPECT_FALSE(same(wheel(torus + "\"disc(R + r)\"\nthrough = \"(r - r*sin(1.3))*ez\"\n"), rolling, {"psi"}));
 }
 
@@ -300,7 +300,7 @@ TEST(Shapes, BallInABowlAndOnABall) {
   EXPECT_FALSE(same(bowl, contact_motion(ball("gap = \"1 - r - d\"\n" + slip("-"), low), 2), all));  // the mutant
   const auto top = contact_motion(ball("body = \"ball\"\non = \"ball(1)\"\n", high), 1);
   EXPECT_TRUE(same(top, contact_motion(ball("gap = \"d - 1 - r\"\n" + slip("-"), high), 1), all));
-  // A ball on a plane that is inclined rolls with 5/7 of the acceleration of a point.
+  // A ball on an inclined plane rolls with 5/7 of the acceleration of a point.
   const auto slope =
       contact_motion(ball("body = \"ball\"\nnormal = [\"sin(0.2)\", 0, \"cos(0.2)\"]\nthrough = \"-r*ez\"\n",
                           "z = \"r*(1/cos(0.2) - 1) - 0.3*tan(0.2)\"\n"),

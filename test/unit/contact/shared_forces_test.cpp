@@ -1,4 +1,5 @@
-// Contacts at rest on one body share their friction: they stick as long as some distribution of it lies in all cones.
+// Contacts at rest on one body share their friction: they stick as long as some distribution of the friction lies in
+// all cones.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -28,7 +29,8 @@ force = [{on = {body = "s", at = )toml" +
          at + "}, vector = \"t*ex\"}]\n";
 }
 
-// The block is pushed by t: it stands until t = mu m g, whatever part each foot carries, and m x'' = t - mu m g from there on.
+// The force t pushes the block: the block stands until t = mu m g, for any shares of its feet, and then m x'' = t - mu
+// m g.
 TEST(SharedFriction, BlockOnTwoFeetSlidesWhenBothAreAtTheirLimit) {
   for (const char* at : {"[0, 0, -0.1]", "[0, 0, 0]"}) {
     const auto m = contact_motion(block(at), 8);
@@ -42,7 +44,8 @@ TEST(SharedFriction, BlockOnTwoFeetSlidesWhenBothAreAtTheirLimit) {
   }
 }
 
-// The contacts are held for a moment while it is found which of them slip; rows in this time show no more friction than there is.
+// The contacts are held for a moment while the search finds the slipping ones; rows in this time show no more friction
+// than the bound.
 TEST(SharedFriction, IsNeverBeyondItsBound) {
   for (const Rational& late : {Rational(1, 10'000'000), Rational(1, 2'000'000), Rational(9, 10'000'000)}) {
     const auto m = contact_motion(block("[0, 0, 0]"), 6, {}, {Rational(5886, 1000) + late});
@@ -62,7 +65,7 @@ TEST(SharedFriction, FeetShareByTheirLoads) {
   EXPECT_LT(std::abs(m.last("x'")), 1e-30);
 }
 
-// A foot without friction leaves all to the other one, which slips when it alone is at its limit.
+// A foot without friction leaves the whole force to the other one, which slips at its own limit.
 TEST(SharedFriction, SmoothFootCarriesNothing) {
   std::string text = block("[0, 0, -0.1]");
   text.replace(text.rfind("friction = \"k\""), std::string("friction = \"k\"").size(), "friction = 0");
@@ -71,7 +74,7 @@ TEST(SharedFriction, SmoothFootCarriesNothing) {
   EXPECT_NEAR(test::times(m, "l1.slips")[0], kLimit / 2, 1e-9);
 }
 
-// With a static coefficient the slip begins with an acceleration.
+// With a static coefficient the slip begins with a jump of the acceleration.
 TEST(SharedFriction, StaticFrictionHoldsLonger) {
   std::string text = block("[0, 0, -0.1]");
   for (std::size_t i = 0; (i = text.find("friction = \"k\"", i)) != std::string::npos; i += 40)
@@ -109,7 +112,7 @@ TEST(SharedFriction, StoolIsPushedAtItsCentre) {
   EXPECT_LT(std::abs(m.last("a")), 1e-9);
 }
 
-// A torque t about the vertical turns it against the moment mu m g r of its three feet.
+// A torque t about the vertical turns the stool against the moment mu m g r of its three feet.
 TEST(SharedFriction, StoolIsTurned) {
   const auto m = contact_motion(stool("on = \"s\", torque = \"t*ez\""), 3);
   ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
@@ -118,8 +121,8 @@ TEST(SharedFriction, StoolIsTurned) {
   EXPECT_NEAR(m.last("a"), std::pow(3 - begin, 3) / 0.6, 1e-8);
 }
 
-// Pushed off its centre at the floor, with feet at (0.3, 0) and (-0.15, +-0.26), the stool stands until the limit load of the
-// three cones. The reference is the solution of that convex problem by another program (SLSQP of SciPy).
+// Pushed off its centre at the floor, with feet at (0.3, 0) and (-0.15, +-0.26), the stool stands until the limit load
+// of the three cones. The reference is the solution of that convex problem by another program (SLSQP of SciPy).
 TEST(SharedFriction, StoolPushedOffItsCentreSlipsAtItsLimitLoad) {
   std::string text = stool("on = {body = \"s\", at = [0, 0.15, -0.2]}, vector = \"t*ex\"");
   text.replace(text.find("sqrt(3)/2"), 9, "0.26/0.3");
@@ -149,8 +152,8 @@ initial = {z = "R"}
 )toml";
 }
 
-// Four feet, whose loads nothing determines: the least loads are 4.905 each, and the limit load of their cones is the same
-// problem with these.
+// The loads of four feet are not determined: the least loads are 4.905 each, and the limit load of their cones is the
+// same problem with these loads.
 TEST(SharedFriction, FourFeetSlipAtTheLimitLoadOfTheirLeastLoads) {
   const auto m = contact_motion(R"toml(coordinates = ["x", "y", "z", "a", "b", "c"]
 parameters = {m = 2, k = 0.3}
@@ -173,7 +176,7 @@ force = [{on = "s", torque = "t*ez"}]
   EXPECT_NEAR(m.last("a"), std::pow(2.5 - begin, 3) / 6 / inertia, 1e-8);
 }
 
-// Two wheels on one axle hold it sideways together, and each rolls: x'' = (2 T/R)/(M + 2 m + 2 I/R^2).
+// Two wheels on one axle share the sideways force, and each rolls: x'' = (2 T/R)/(M + 2 m + 2 I/R^2).
 TEST(SharedFriction, DrivenAxleRollsStraight) {
   const auto m = contact_motion(axle("\"roll\", ", "rotz(psi)*rotx(roll)"), 1);
   ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
@@ -183,7 +186,7 @@ TEST(SharedFriction, DrivenAxleRollsStraight) {
     EXPECT_NEAR(m.last(friction), 27.0 / 9.5, 1e-12) << friction;
 }
 
-// Without the coordinate in which the axle tilts, its wheels carry equal loads.
+// Without the coordinate by which the axle tilts, its wheels carry equal loads.
 TEST(SharedFriction, LoadsThatNothingDeterminesAreTheLeast) {
   const auto m = contact_motion(axle("", "rotz(psi)"), 1);
   ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
@@ -192,7 +195,7 @@ TEST(SharedFriction, LoadsThatNothingDeterminesAreTheLeast) {
   for (const char* load : {"cr.normal", "cl.normal"}) EXPECT_NEAR(m.last(load), 4.5 * 9.81, 1e-12) << load;
 }
 
-// What the equations of a motion do not show: a contact that moves while its mode says that it sticks.
+// A contact moves although its mode is sticking, which the equations of a motion do not show.
 TEST(SharedFriction, ContactsThatDoNotAsTheirModesSayAreFound) {
   const SourceText source{"test.toml", block("[0, 0, 0]")};
   Diagnostics diagnostics;
@@ -230,7 +233,8 @@ TEST(SharedForces, NoFootSlipsWhereAForceTouchesTheLimit) {
   EXPECT_NEAR(m.last("x'"), kLimit / 2 / 2 * 3 * 4.0 / 9, 1e-9);
 }
 
-// The corners of a box on a plate that tilts slowly slip together where tan(w t) = mu: the time is as well known as 1e-12 of the forces.
+// The corners of a box on a slowly tilting plate slip together at tan(w t) = mu; the error of this time is that of
+// 1e-12 of the forces.
 TEST(SharedForces, BoxOnATiltingPlateSlipsAtTheAngleOfFriction) {
   const auto m = test::contact_motion(R"toml(coordinates = ["x", "z", "p"]
 parameters = {m = 2, a = 0.2, h = 0.3, g = 9.81, mu = 0.5, w = 0.1}

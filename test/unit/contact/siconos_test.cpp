@@ -1,5 +1,6 @@
-// Motions with contacts against published results of Siconos: rows of reference files of siconos-tutorials, examples/mechanics
-// (Apache-2.0). bench/peers/siconos.py names their commits. Each test has a mutant, another friction or restitution.
+// Motions with contacts, compared with published results of Siconos: rows of reference files of siconos-tutorials,
+// examples/mechanics (Apache-2.0). bench/peers/siconos.py names their commits. Each test has a mutant with another
+// friction or restitution.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ struct Value {
   double siconos, tolerance;
 };
 
-// The largest deviation, measured in the tolerances.
+// The largest deviation in units of the tolerances.
 double deviation(const test::Motion& m, const std::vector<Value>& values) {
   double most = 0;
   for (const Value& v : values) most = std::max(most, std::abs(m.last(v.column) - v.siconos) / v.tolerance);
@@ -32,8 +33,9 @@ std::string changed(std::string text, const std::string& from, const std::string
 
 std::string woodpecker() { return test::file_text(test::source_dir() / "models/contacts/woodpecker.toml"); }
 
-// Woodpecker.ref has steps h = 2e-5 with the mean of the forces. Up to the first impact the error at time t is near h^2 t/12
-// times the third derivative: 1e-7 for the angle of the bird, whose third derivative is 5e4, and 5e-6 for its rate.
+// Woodpecker.ref has steps h = 2e-5 with the mean of the forces. Up to the first impact the error at time t is near h^2
+// t/12 times the third derivative: 1e-7 for the angle of the bird, whose third derivative is 5e4, and 5e-6 for its
+// rate.
 TEST(Siconos, WoodpeckerBeforeTheFirstImpact) {
   const std::vector<Value> values = {{"y", -4.407447581115698e-03, 4e-9},
                                      {"phiM", -0.1036, 1e-15},
@@ -46,8 +48,9 @@ TEST(Siconos, WoodpeckerBeforeTheFirstImpact) {
   EXPECT_GT(deviation(contact_motion(changed(begun, "mu = 0.3\n", "mu = 0.3001\n"), t, {}, {t}), values), 100);
 }
 
-// In Woodpecker.ref an impact is late by up to h, in which the sleeve with 25 rad/s turns on by 5e-4; so the sleeve stands with
-// its edges up to 1.5e-4 rad inside the pole, and the spring pushes more. There are five impacts before 0.122, ten before 0.29998.
+// In Woodpecker.ref an impact is late by up to h, in which the sleeve with 25 rad/s turns on by 5e-4; so the sleeve
+// stands with its edges up to 1.5e-4 rad inside the pole, and the spring pushes more. There are five impacts before
+// 0.122, ten before 0.29998.
 TEST(Siconos, WoodpeckerAfterImpacts) {
   const std::vector<Value> first = {{"y", -1.082597072663672e-02, 1e-4},
                                     {"phiS", -1.173944200965509e-01, 3e-3},
@@ -92,8 +95,8 @@ th = "pi/3"
 )toml";
 }
 
-// RockingBlockED_Lsodar_LZBimpact.ref follows impacts of single corners in steps of 5e-5 of the impulse, by a law that is
-// Newton's for one contact without friction. The fourth impact is the first one of the right corner.
+// RockingBlockED_Lsodar_LZBimpact.ref integrates impacts of single corners in steps of 5e-5 of the impulse, by a law
+// that equals Newton's for one contact without friction. The fourth impact is the first one of the right corner.
 TEST(Siconos, RockingBlockAfterThreeAndFourImpacts) {
   const std::vector<Value> values = {{"y", 1.128191974939628e-01, 5e-5},
                                      {"th", -4.829609415211609e-01, 5e-5},
@@ -109,8 +112,8 @@ TEST(Siconos, RockingBlockAfterThreeAndFourImpacts) {
   EXPECT_NEAR(test::times(next, "right.hits")[0], 1.417522522998370, 5e-5);
 }
 
-// By ImpactingStick.ref the energy of this stick is 3.765951 at 1e-4 and 3.766658 at 0.1: Newton's law with friction raises it by
-// the friction whose slip turns. Such an impact ends the motion here.
+// In ImpactingStick.ref the energy of this stick is 3.765951 at 1e-4 and 3.766658 at 0.1: Newton's law raises it, by
+// friction whose slip reverses. Such an impact ends the motion here.
 TEST(Siconos, StickWhoseImpactRaisesTheEnergy) {
   const std::string stick = R"toml(coordinates = ["x", "y", "th"]
 gravity.field = "-10*ey"

@@ -1,4 +1,4 @@
-// Slips with two components that begin where the contact sticks.
+// Slips with two components that begin at a sticking contact.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@ namespace slip_start_test {
 using test::contact_motion;
 using test::times;
 
-// A force that grows begins the slip without acceleration. Pushed straight the block goes by the cube of the time; a force
-// that turns bends its path.
+// A growing force begins the slip without acceleration. The path of a straight push grows with the cube of the time; a
+// turning force bends the path.
 TEST(SlipStart, WithoutAcceleration) {
   const auto push = [](const std::string& turn, const std::string& friction) {
     return contact_motion(R"toml(coordinates = ["x", "y", "z"]
@@ -36,8 +36,8 @@ contact = [{name = "floor", gap = "z", slip = ["x'", "y'"], friction = )toml" +
   EXPECT_GT(std::abs(push("0", "0.31").last("x") - straight.last("x")), 1e-3);  // the mutant
 }
 
-// A slip that begins with an acceleration is that of the same block with one component. The belt moves along x for the one, and
-// aslant for the other.
+// A slip that begins with an acceleration is the same with one and with two components: the belt moves along x, or at
+// an angle to x and y.
 TEST(SlipStart, WithAnAcceleration) {
   const auto belt = [](bool aslant, const std::string& friction) {
     const std::string head = aslant ? "coordinates = [\"x\", \"y\", \"z\"]\n" : "coordinates = [\"x\", \"z\"]\n";
@@ -76,7 +76,7 @@ contact = [{name = "floor", gap = "z", slip = ["x'", "y'"], friction = )toml" +
   EXPECT_GT(std::abs(block("0.31").last("x") - m.last("x")), 1e-3);  // the mutant
 }
 
-// A block of mass 1 with the friction 1 at most, in space, or in a plane.
+// A block of mass 1 with a friction of at most 1, in space or in a plane.
 std::string pushed(const std::string& force, bool plane = false) {
   return std::string("coordinates = [\"x\", ") + (plane ? "" : "\"y\", ") +
          "\"z\"]\ngravity.field = \"-10*ez\"\nparticle = [{name = \"block\", mass = 1, position = \"x*ex + " +
@@ -86,7 +86,7 @@ std::string pushed(const std::string& force, bool plane = false) {
          "}]\ntable = [{name = \"P\", x = [0, 1, 2, 3, 4, 9], y = [0, 1, 0, 3, 0, 0]}]\n";
 }
 
-// The first row is that of the slip, in space as in the plane, and no event tells of it.
+// The slip begins at the first row, in space as in the plane, and no event reports it.
 TEST(SlipStart, SlipsFromTheFirstRow) {
   for (const bool plane : {false, true}) {
     const auto m = contact_motion(pushed("3*ex", plane), 1, {}, {0, Rational(1, 2'000'000'000), 1});
@@ -104,7 +104,7 @@ TEST(SlipStart, SlipsFromTheFirstRow) {
   EXPECT_GT(contact_motion(pushed("3.1*ex"), 1).last("x"), 1.04);  // the mutant
 }
 
-// While a slip that begins without an acceleration is held, its rows show it with the friction of a slip.
+// A slip that begins without an acceleration is held at first; its rows show the friction of a slip.
 TEST(SlipStart, FrictionIsNeverBeyondItsBound) {
   const auto m = contact_motion(pushed("t*ex + t^2/8*ey"), 2);
   ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
@@ -115,7 +115,7 @@ TEST(SlipStart, FrictionIsNeverBeyondItsBound) {
   }
 }
 
-// Friction that is at its bound where a mode begins goes beyond it later: from the start, or where a slip has ended.
+// Friction that is at its bound when a mode begins passes it later: from the start, or after the end of a slip.
 TEST(SlipStart, FromTheBoundOfFriction) {
   for (const bool plane : {false, true}) {
     const auto grows = contact_motion(pushed("(1 + t)*ex", plane), 2);
@@ -148,14 +148,14 @@ TEST(SlipStart, NotWhereAForceTouchesTheBound) {
     const auto jumps = contact_motion(pushed("piecewise(t < 1, t, 3)*ex", plane), 2);  // the mutant
     ASSERT_TRUE(jumps.report.outcome.ok()) << jumps.report.outcome.message;
     EXPECT_NEAR(jumps.last("x"), 1, 1e-13);
-    // A force that stays at the bound is held, and goes beyond it later.
+    // A force that stays at the bound is held until it passes the bound.
     const auto stays = contact_motion(pushed("piecewise(t < 1, t, t < 2, 1, t - 1)*ex", plane), 3);
     ASSERT_TRUE(stays.report.outcome.ok()) << stays.report.outcome.message;
     EXPECT_NEAR(stays.last("x"), 1.0 / 6, 1e-11);
   }
 }
 
-// A slip in space that is straight along an axis vanishes in all its digits.
+// A slip in space along an axis vanishes to the last digit.
 TEST(SlipStart, AndEndsAgainExactly) {
   for (const std::string axis : {"x", "y"})
     for (const double F : {2.0, 3.0, 7.0}) {
@@ -167,7 +167,7 @@ TEST(SlipStart, AndEndsAgainExactly) {
     }
 }
 
-// A slip vanishes where its force jumps, so that it turns back at once, and at the end of the motion.
+// A slip vanishes when its force jumps, so that it reverses at once, and at the end of the motion.
 TEST(SlipStart, AndVanishesWhereAForceJumpsOrTheMotionEnds) {
   for (const bool plane : {false, true}) {
     const auto turns = contact_motion(
@@ -181,8 +181,8 @@ TEST(SlipStart, AndVanishesWhereAForceJumpsOrTheMotionEnds) {
   }
 }
 
-// The direction of a slip turns up to its end. With the slip v, the friction f and a force F at the angle whose cosine is c the
-// slip ends at v (f + F c)/(f^2 - F^2), in any unit of time.
+// The direction of a slip turns up to its end. For a slip v, a friction f and a force F whose angle to the slip has the
+// cosine c, the slip ends at v (f + F c)/(f^2 - F^2), in any unit of time.
 TEST(SlipStart, EndsAtItsTimeInAnyUnitOfTime) {
   const auto end = [](const std::string& unit, const std::string& force) {
     const auto m = contact_motion("coordinates = [\"x\", \"y\", \"z\"]\nparameters.T = \"" + unit + R"toml("
@@ -203,7 +203,7 @@ initial = {"x'" = "3/T", "y'" = "4/T"}
   EXPECT_GT(std::abs(end("1", "1.1") - 5 * 3.8 / 8), 1e-3);  // the mutant
 }
 
-// An event that ends the motion does so while the contact is held before its slip is followed.
+// An event that ends the motion may lie in the time for which a slipping contact is still held.
 TEST(SlipStart, EndsAtAnEvent) {
   const auto m = contact_motion(R"toml(coordinates = ["x", "y", "z"]
 particle = [{name = "block", mass = 1, position = "x*ex + y*ey + z*ez"}]

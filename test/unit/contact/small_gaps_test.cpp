@@ -1,5 +1,5 @@
-// Where the gap of a contact is round-off of large terms: impacts that add up on a tilted plane, far down, and a load that
-// vanishes without a slip. Against closed forms.
+// Gaps that are round-off of large terms: impacts that add up on a tilted plane, far down, and a load that vanishes
+// without a slip. The times are compared with closed forms.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -20,12 +20,12 @@ contact = [{name = "slope", body = "P", normal = "sin(tilt)*ex + cos(tilt)*ez", 
 initial = {z = "h"}
 )toml";
 
-// Velocities of up to 80 m/s are rounded by 1e-14 at each of 100 impacts, which is 3e-15 s of fall, and the intervals after it
-// change by up to ten times as much.
+// Velocities of up to 80 m/s are rounded by 1e-14 at each of 100 impacts, which is 3e-15 s of fall, and the intervals
+// after it change by up to ten times as much.
 constexpr double kRounded = 3e-12;
 
-// The gap is h cos(tilt) at first, and the acceleration along the normal -g cos(tilt): the times are those on a level plane
-// until the first impact, sqrt(2h/g), and 2 v e/((1 - e) g) from there, in which v = sqrt(2 g h).
+// The gap is h cos(tilt) at first, and the acceleration along the normal is -g cos(tilt), so the times are those on a
+// level plane: sqrt(2h/g) to the first impact and 2 v e/((1 - e) g) from it, with v = sqrt(2 g h).
 TEST(SmallGaps, ImpactsOnATiltedPlaneAddUpToTheLimit) {
   for (const auto& [tilt, e] : {std::pair("0", 0.9), std::pair("0.3", 0.5), std::pair("0.3", 0.9),
                                 std::pair("0.8", 0.7), std::pair("0.8", 0.9), std::pair("1.3", 0.8)}) {
@@ -36,7 +36,7 @@ TEST(SmallGaps, ImpactsOnATiltedPlaneAddUpToTheLimit) {
     const double limit = std::sqrt(2 / 9.81) * (1 + 2 * e / (1 - e));
     ASSERT_EQ(times(m, "slope.rests").size(), 1U) << tilt << " " << e;
     EXPECT_NEAR(times(m, "slope.rests")[0], limit, kRounded) << tilt << " " << e;
-    // Each impact on its way: the intervals shrink by e.
+    // The intervals between impacts shrink by e.
     const std::vector<double> hits = times(m, "slope.hits");
     double t = std::sqrt(2 / 9.81), interval = 2 * t;
     for (std::size_t k = 0; k < hits.size(); ++k, t += interval *= e)
@@ -44,7 +44,7 @@ TEST(SmallGaps, ImpactsOnATiltedPlaneAddUpToTheLimit) {
   }
 }
 
-// A block that sticks to a plate which moves up and down: its friction is zero and stays so, also where the load vanishes.
+// A block sticks to a plate that moves up and down: its friction is zero and stays zero, also when the load vanishes.
 TEST(SmallGaps, WhatLeavesWithoutASlipDoesNotSlip) {
   const auto m = contact_motion(R"toml(coordinates = ["x", "z"]
 gravity.field = "-9.81*ez"

@@ -1,5 +1,5 @@
-// Constraints that hold in some modes, against closed forms. Each law has a mutant, a model of other constants, that does
-// not fit.
+// Constraints that hold in some modes, compared with closed forms. Each law has a mutant, a model with other constants,
+// whose motion differs.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ x = "h"
 )toml" + more;
 }
 
-// The law of the catch: the ball loses the energy of its velocity v along the string, m v^2/2, and no other.
+// The ball loses the energy m v^2/2 of its velocity v along the string and no other.
 TEST(Switched, EnergyLostAtTheCatchIsThatAlongTheString) {
   const auto misfit = [](double h, double told) {
     const auto m = contact_motion(caught(), 2, {{"h", std::to_string(h)}});
@@ -64,7 +64,7 @@ TEST(Switched, CatchTakesPlaceWhereTheStringIsTaut) {
   const auto list = times(m, "tightens");
   ASSERT_EQ(list.size(), 1U);
   expect_near(list[0], std::sqrt(2 * 0.8 / 9.81), 1e-14);
-  // The string holds the ball, pulls, and has no force before.
+  // The string holds the ball and pulls; before the catch it has no force.
   EXPECT_EQ(m.number(0, "string.active"), 0);
   EXPECT_EQ(m.number(0, "lambda.string"), 0);
   EXPECT_EQ(m.last("string.active"), 1);
@@ -76,8 +76,8 @@ TEST(Switched, CatchTakesPlaceWhereTheStringIsTaut) {
   }
 }
 
-// With too little speed for a whole turn the string slackens above the centre, and catches the ball again. The ball is free
-// where v^2 = -g z, at the height (v0^2 + 2 g z0)/(3 g) with the velocity v0 at z0.
+// With too little speed for a whole turn the string slackens above the centre and later catches the ball again. The
+// ball becomes free at v^2 = -g z, at the height (v0^2 + 2 g z0)/(3 g) for the velocity v0 at z0.
 TEST(Switched, SlackStringLetsGo) {
   std::string text = caught("z = -0.8\n\"x'\" = 4.4\n\"z'\" = 3.3\n");
   text.replace(text.find("taut = 0"), 8, "taut = 1");
@@ -94,8 +94,8 @@ TEST(Switched, SlackStringLetsGo) {
   }
 }
 
-// A pendulum whose string of the length l meets a peg at the depth d: no energy is lost, and half a swing lasts a quarter of
-// the period of each length, for small angles pi (sqrt(l/g) + sqrt((l - d)/g)) in a period.
+// A pendulum whose string of the length l meets a peg at the depth d loses no energy. Each half of the swing has the
+// period of its own length; for small angles the whole period is pi (sqrt(l/g) + sqrt((l - d)/g)).
 TEST(Switched, PegShortensAPendulum) {
   const std::string text = R"toml(coordinates = ["x", "z"]
 parameters = {m = 0.2, g = 9.81, l = 1, d = 0.6, alpha = 1e-4}
@@ -137,11 +137,11 @@ z = "-l*cos(alpha)"
     return list.at(1) - list.at(0);
   };
   const double formula = M_PI * (std::sqrt(1 / 9.81) + std::sqrt(0.4 / 9.81));
-  expect_near(period("0.6"), formula, 1e-8);            // up to alpha^2/16 and its like behind the peg
+  expect_near(period("0.6"), formula, 1e-8);            // error up to alpha^2/16, and likewise behind the peg
   EXPECT_GT(std::abs(period("0.61") - formula), 1e-3);  // the mutant
 }
 
-// A clutch joins two wheels: their angular momentum stays, and J1 J2 (w1 - w2)^2/(2 (J1 + J2)) is lost.
+// A clutch joins two wheels: their angular momentum is kept, and the energy J1 J2 (w1 - w2)^2/(2 (J1 + J2)) is lost.
 std::string clutch(const std::string& engaged) {
   return R"toml(coordinates = ["a", "b"]
 parameters = {J1 = 1.5, J2 = 2.5, M = 3}
@@ -164,16 +164,16 @@ energy = "J1*a'^2/2 + J2*b'^2/2"
 
 TEST(Switched, ClutchOfTwoWheels) {
   const double J1 = 1.5, J2 = 2.5, M = 3, w1 = 10 + M / J1;
-  // a' = 2 b': the impulse S along a' - 2 b' stops it.
+  // For a' = 2 b', the impulse S along a' - 2 b' makes this difference zero.
   const double S = w1 / (1 / J1 + 4 / J2), a = w1 - S / J1, b = 2 * S / J2;
   const auto misfit = [&](double told) {
     std::vector<Rational> at = {Rational(3, 2), Rational(5, 2)};
     const auto m = contact_motion(clutch("choose(gear, 0, 1, 0)"), Rational(5, 2), {{"J1", std::to_string(told)}}, at);
     EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
     EXPECT_EQ(times(m, "up").size(), 2U);
-    const double rate = M / (J1 + J2 / 4);  // of a', together
+    const double rate = M / (J1 + J2 / 4);  // of a' while joined
     double worst = std::abs(m.number(0, "a'") - (a + rate / 2)) + std::abs(m.number(0, "b'") - (b + rate / 4));
-    // Free again from t = 2 on.
+    // The wheels are free again from t = 2 on.
     worst += std::abs(m.last("a'") - (a + rate + M / J1 / 2)) + std::abs(m.last("b'") - (b + rate / 2));
     EXPECT_EQ(m.number(0, "clutch.active"), 1);
     EXPECT_EQ(m.last("clutch.active"), 0);
@@ -198,7 +198,7 @@ TEST(Switched, LeastChangeRaisesNoEnergy) {
   }
 }
 
-// A string that sets in at another length than its own has no motion, and the outcome says so.
+// A string that engages at another length than its own has no motion, and the outcome reports it.
 TEST(Switched, ConstraintThatIsNotMetIsAnOutcome) {
   std::string early = caught();
   early.replace(early.find("when = \"norm(ball) - l\""), 23, "when = \"norm(ball) - l + 0.1\"");
@@ -209,7 +209,7 @@ TEST(Switched, ConstraintThatIsNotMetIsAnOutcome) {
   EXPECT_TRUE(named) << m.report.outcome.message;
 }
 
-// Rows at given times are those of a motion without rows, and no time is lost.
+// Rows at given times agree with a motion without rows, and every time has its row.
 TEST(Switched, RowsAtTimes) {
   std::vector<Rational> at;
   for (int k = 0; k <= 20; ++k) at.emplace_back(k, 10);

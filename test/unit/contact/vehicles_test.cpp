@@ -1,8 +1,8 @@
-// Vehicles without roll and pitch, on a plane that tilts: their wheels begin to slip, one after the other or together, and
+// Vehicles without roll and pitch on a tilting plane: their wheels begin to slip, one after the other or together, and
 // come to rest again.
 //
-// The references are motions with regularized friction -mu N v/sqrt(v^2 + eps^2), by SciPy's Radau and equations of its own; they
-// are those for eps = 2e-8, and change by about 1e-6 from there on.
+// The references are motions with regularized friction -mu N v/sqrt(v^2 + eps^2), computed by SciPy's Radau from
+// separate equations, with eps = 2e-8; for smaller eps they change by about 1e-6.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using test::contact_motion;
 
 struct Vehicle {
   const char* name;
-  std::vector<const char*> wheels;  // where they are, of the middle of the body
+  std::vector<const char*> wheels;  // places relative to the middle of the body
   double mass, inertia, offset;     // of the body; its mass centre in front of the middle
   double rate, towards;             // of the tilt
   double friction;
@@ -56,26 +56,26 @@ const std::vector<const char*> kBicycle = {"0.3*B.x", "(-0.3)*B.x"},
                                kCart = {"0.3*B.x - 0.2*B.y", "0.3*B.x + 0.2*B.y", "(-0.3)*B.x - 0.2*B.y",
                                         "(-0.3)*B.x + 0.2*B.y"};
 
-// The rear wheels begin to slip beside the front wheel, which slips already while the body turns.
+// The rear wheels begin to slip while the front wheel slips already and the body turns.
 const Vehicle kTurning{"turning",   kTricycle,  6.65,        .326, 0, .63,
                        2.57,        .5,         "w1 = 0.29", {0},  0, {"c0.slips", "c1.slips", "c2.slips"},
                        -1.10120998, 0.32796414, 1.88449522};
-// A wheel that is locked and one that rolls come to their limits together, and the others hold: the slip begins with 1e-9 of
-// the accelerations without friction.
+// A locked and a rolling wheel reach their limits together, and the others hold: the slip begins with 1e-9 of the
+// accelerations without friction.
 const Vehicle kTogether{"together", kCart,       9.46,
                         .488,       0,           .74,
                         5.58,       .25,         "w1 = -0.03, w2 = -0.22",
                         {0},        0,           {"c0.slips", "c1.slips"},
                         2.12654258, -1.23879703, -0.60861347};
-// The slip of the rear wheel is slow for .2 s.
+// The rear wheel slips slowly for 0.2 s.
 const Vehicle kSlow{"slow",    kBicycle,    9.78,         .487, -.06, .65,
                     4.98,      .26,         "w1 = -0.38", {},   0,    {"c1.slips", "c0.slips"},
                     0.2638563, -1.45177604, 1.35359508};
-// The body turns by more than a right angle, and the wheels have their sides along the other axis.
+// The body turns by more than a right angle, so the sides of the wheels lie along the other axis.
 const Vehicle kTurned{
     "turned", kTricycle, 11.55,        .225,        .066,       .67,       1.9, .77, "w0 = 0.06, w1 = 0.3, w2 = -0.2",
     {},       .2,        {"c0.slips"}, -0.40701665, 0.60863715, 1.65925211};
-// The cart slides along its wheels, of which one is locked: what is round-off of its other velocities is no slip.
+// The cart slides along its wheels, one of which is locked: its other velocities are round-off and count as no slip.
 const Vehicle kStraight{"straight",
                         kCart,
                         9.61,
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(OnASlope, Vehicles,
                          testing::Values(kTurning, kTogether, kSlow, kTurned, kStraight, kEnding, kSideForce),
                          [](const auto& test) { return std::string(test.param.name); });
 
-// The motion does not depend on the rows that are asked for, also where one lies in the time for which wheels are held.
+// The motion does not depend on the requested rows, even on a row in the time for which wheels are held.
 TEST(VehicleRows, LeaveTheMotion) {
   const auto m = contact_motion(model(kTogether), Rational(17, 100)),
              rows = contact_motion(model(kTogether), Rational(17, 100), {}, {Rational(15, 100), Rational(17, 100)});
@@ -128,7 +128,7 @@ TEST(VehicleRows, LeaveTheMotion) {
   for (const char* q : {"x", "y", "psi", "w0", "w1"}) EXPECT_NEAR(m.last(q), rows.last(q), 1e-13) << q;
 }
 
-// Taylor's steps would be 3e-10 long where the slip begins.
+// Taylor's steps would be 3e-10 long at the beginning of the slip.
 TEST(SlowSlips, AreFollowedByBdf) {
   const auto m = contact_motion(model(kSlow), Rational(2, 5));
   ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
@@ -138,7 +138,7 @@ TEST(SlowSlips, AreFollowedByBdf) {
   EXPECT_GT(m.report.method.steps, 50U);
 }
 
-// Also with a loose tolerance, with which Taylor's method alone takes 92 000 steps.
+// With a loose tolerance Taylor's method alone takes 92 000 steps.
 TEST(SlowSlips, AreFollowedByBdfWithALooseTolerance) {
   const auto m = contact_motion(model(kSlow), Rational(2, 5), {}, {}, Rational(1, 1'000'000));
   ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
@@ -146,7 +146,7 @@ TEST(SlowSlips, AreFollowedByBdfWithALooseTolerance) {
   EXPECT_GT(m.report.method.steps, 10U);
 }
 
-// At rest all velocities are round-off, also that with which a contact slips.
+// At rest all velocities are round-off, also the velocity of a slipping contact.
 TEST(LockedVehicles, Rest) {
   const Vehicle locked{"locked", kTricycle, 9.51, .396, -.058, .23, 1.48, .78, "", {0, 1, 2}, 0, {}, 0, 0, 0};
   const auto m = contact_motion(model(locked), Rational(3, 2));

@@ -20,7 +20,7 @@ TEST(Pieces, EveryStateIsTakenOnce) {
   for (const std::atomic<int>& times : taken) EXPECT_EQ(times, 1);
 }
 
-// The computation of a piece may itself look for a stop: the other threads end then, too.
+// The computation of a piece may itself ask whether to stop; the other threads end then, too.
 TEST(Pieces, StopWithinAPieceEndsAllThreads) {
   std::atomic<std::size_t> pieces = 0;
   const std::thread::id here = std::this_thread::get_id();

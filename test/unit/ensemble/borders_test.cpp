@@ -43,7 +43,7 @@ Refined refine(std::size_t side, int generations, const Truth& truth, const Bord
 
 const Truth kDisc = [](double x, double y) { return Sight{std::hypot(x - 0.47, y - 0.52) < 0.31 ? 1U : 0U, 0}; };
 
-// The cells of the whole fine grid that the border crosses whose corners are not all known.
+// The number of corners, not computed, of cells of the finest grid that the border crosses.
 std::size_t missed(const Refined& r, std::int64_t side, const Truth& truth) {
   std::size_t count = 0;
   const auto kind = [&](std::int64_t i, std::int64_t k) {
@@ -64,7 +64,7 @@ TEST(Borders, FindEachCellOfTheFineGridThatABorderCrosses) {
   const Refined r = refine(9, 4, kDisc, kKinds);
   EXPECT_EQ(missed(r, 128, kDisc), 0U);
   EXPECT_LT(r.points.size(), 129U * 129U / 5) << r.points.size();
-  // Twice as fine, twice as many points along the border.
+  // In a grid twice as fine, about twice as many points lie along the border.
   for (std::size_t g = 2; g < r.counts.size(); ++g) {
     EXPECT_LT(r.counts[g], 3 * r.counts[g - 1]);
     EXPECT_GT(2 * r.counts[g], 3 * r.counts[g - 1]);
@@ -78,7 +78,7 @@ TEST(Borders, WithoutDifferencesNothingIsAdded) {
   EXPECT_GT(missed(r, 64, kDisc), 0U);
 }
 
-// A bay between two points of the first grid is seen by the points that the next cell puts on the common edge.
+// The points that the next cell puts on the common edge show a bay between two points of the first grid.
 TEST(Borders, EnterACellAcrossItsEdge) {
   const auto kind = [](double x, double y) {
     const bool strip = y < 0.2, bay = std::abs(x - 0.25) < 0.1 && y < 0.7;

@@ -1,4 +1,4 @@
-// Ensembles: a case is what `simulate` makes of it, and the same bits whoever computes it and after what.
+// Ensembles: a case gives the result of `simulate`, and the same bits in any thread and after any other case.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -59,7 +59,7 @@ set = {"y'" = "-e*y'"}
 y = 1
 )toml";
 
-// A pendulum that an event stops or turns, by what is set or by a mode, or that is only told of.
+// A pendulum with events that stop it, that turn it by a set velocity or by a mode, or that are only reported.
 const char* const kWatched = R"toml(
 coordinates = ["a"]
 parameters = {l = 1, g = 9.81}
@@ -83,7 +83,7 @@ stop = true
 a = 0
 )toml";
 
-// A pendulum that is driven by a table and dragged along by what has kinks.
+// A pendulum that a table drives and that forces with kinks drag along.
 const char* const kKinks = R"toml(
 coordinates = ["a"]
 parameters = {l = 1, g = 9.81}
@@ -124,7 +124,7 @@ struct Sweep {
     EXPECT_TRUE(make_scenario(test::model_of(text_), *find_formulation(form), {}, scenario).ok());
     options.to = 1;
   }
-  // One line of numbers for each case.
+  // One list of numbers for each case.
   void cases(const std::vector<std::vector<Rational>>& values) {
     options.cases = values.size();
     options.numbers = [values](std::size_t k) { return EnsembleCase{values[k], {}}; };
@@ -145,7 +145,7 @@ struct Sweep {
   std::string text_;
 };
 
-// Every bit of the results.
+// All bits of the results, as text.
 std::string bits(const std::vector<CaseResult>& list) {
   std::string all;
   const auto add = [&](const std::vector<double>& numbers) {
@@ -162,7 +162,7 @@ std::string bits(const std::vector<CaseResult>& list) {
   return all;
 }
 
-// What `simulate` says of the end, with these parameters set in the file. Without a kernel no bit may differ.
+// The last row that `simulate` gives if these parameters are set in the file. Without a kernel no bit may differ.
 std::vector<double> simulated(const std::string& text, const Overrides& set, const Rational& to, bool kernel = false) {
   Scenario s;
   EXPECT_TRUE(make_scenario(test::model_of(text, set), *find_formulation("routh"), {}, s).ok());
@@ -176,7 +176,7 @@ std::vector<double> simulated(const std::string& text, const Overrides& set, con
   return row;
 }
 
-// Grids of lengths, some of which are too short for x = 1, and masses.
+// Lengths, some of which are too short for x = 1, and masses.
 std::vector<std::vector<Rational>> lengths(int count) {
   std::vector<std::vector<Rational>> list;
   for (int k = 0; k < count; ++k) list.push_back({Rational(4 + k) / 5, Rational(1 + k % 3)});
@@ -202,7 +202,7 @@ TEST(Ensemble, EveryCaseIsWhatSimulateMakesOfIt) {
   EXPECT_EQ(run.report.in_workspaces, 0U) << "nothing here needs a workspace of its own";
 }
 
-// A kernel has the pivots of the start it was made at: of another one in an ensemble.
+// A kernel has the pivots of the start for which it is made, which in an ensemble is the start of another case.
 TEST(Ensemble, KernelsAreSeenInTheLastDigits) {
   Sweep run(kPendulum);
   run.options.varied = {parameter(run.model(), "l"), parameter(run.model(), "m")};
@@ -223,7 +223,7 @@ TEST(Ensemble, KernelsAreSeenInTheLastDigits) {
   }
 }
 
-// Each of some cases of a sweep, alone in a sweep of its own.
+// Compares some cases of a sweep with sweeps of one case.
 void expect_the_bits_of_a_case_alone(const std::string& text, Sweep& many, std::initializer_list<std::size_t> cases) {
   const std::vector<CaseResult> together = many.go(1);
   ASSERT_EQ(together.size(), many.options.cases);
@@ -244,8 +244,8 @@ void expect_the_bits_of_a_case_alone(const std::string& text, Sweep& many, std::
   EXPECT_NE(together[0].last, together[1].last);
 }
 
-// Many cases share the lanes of a kernel, few do not: no bit of a case depends on that, nor on its neighbours,
-// parameters or end.
+// Many cases share the lanes of a kernel, few do not. No bit of a case depends on the lanes, nor on its neighbours,
+// their parameters or their ends.
 TEST(Ensemble, LanesHaveTheBitsOfACaseAlone) {
   const std::string text = test::shipped_text("zoo/disc");
   Sweep many(text);
@@ -254,14 +254,14 @@ TEST(Ensemble, LanesHaveTheBitsOfACaseAlone) {
   std::vector<std::vector<Rational>> values;
   for (int k = 0; k < 40; ++k) values.push_back({Rational(1) + Rational(k % 5, 8), Rational(1, 4) + Rational(k, 64)});
   many.cases(values);
-  // One of them has no motion.
+  // Case 13 has no motion, as its end is its start.
   many.options.numbers = [values](std::size_t k) {
     return EnsembleCase{values[k], k == 13 ? Rational(0) : Rational(1) + Rational(static_cast<int>(k % 3), 4)};
   };
   expect_the_bits_of_a_case_alone(text, many, {0, 7, 8, 13, 23, 39});
 }
 
-// A long sweep tries more lanes when it has been under way for a while.
+// A long sweep tries more lanes after a while.
 TEST(Ensemble, LongSweepsHaveTheBitsOfACaseAlone) {
   const std::string text = test::shipped_text("zoo/disc");
   Sweep many(text);
@@ -273,7 +273,7 @@ TEST(Ensemble, LongSweepsHaveTheBitsOfACaseAlone) {
   expect_the_bits_of_a_case_alone(text, many, {0, 5000, 11'000, 11'999});
 }
 
-// Steps of all lanes are made together until one of them meets its end, a row, or a pulse that its series do not show.
+// Steps of all lanes are made together until one lane reaches its end, a row, or a pulse that its series do not show.
 TEST(Ensemble, StepsTogetherAreThoseOfACaseAlone) {
   const std::string text = kPulses;
   Sweep many(text);
@@ -287,7 +287,7 @@ TEST(Ensemble, StepsTogetherAreThoseOfACaseAlone) {
   expect_the_bits_of_a_case_alone(text, many, {0, 1, 3, 7, 8, 13, 23, 39});
 }
 
-// A pendulum that drags a light body through something viscous.
+// A pendulum that drags a light body through a viscous fluid.
 const char* const kStiff = R"toml(
 coordinates = ["a", "b"]
 parameters = {c = 2000}
@@ -315,7 +315,7 @@ TEST(Ensemble, StiffCasesGoByTheMethodOfSimulate) {
   for (const CaseResult& r : many.go(1)) EXPECT_LT(r.steps, 3000U) << r.number;
 }
 
-// By Runge-Kutta and BDF cases go one by one, as `simulate` makes them.
+// With Runge-Kutta and BDF, cases are computed one by one, as by `simulate`.
 TEST(Ensemble, CasesGoByTheMethodAskedFor) {
   for (const Method method : {Method::runge_kutta, Method::bdf}) {
     Sweep run(kPendulum);
@@ -405,7 +405,7 @@ TEST_P(Threads, HaveNoInfluenceOnAnyBit) {
   EXPECT_FALSE(one.empty());
   for (const std::size_t threads : {2U, 3U, 4U, 5U, 6U, 7U, 8U})
     EXPECT_EQ(bits(run.go(threads)) == one, true) << threads << " threads";
-  // Alone, every case is the same as among others.
+  // A case by itself gives the same result as among others.
   const auto all = run.go(2);
   for (const std::size_t k : {std::size_t{0}, values.size() / 3, values.size() - 1}) {
     run.cases({values[k]});
@@ -423,8 +423,8 @@ INSTANTIATE_TEST_SUITE_P(Of, Threads,
                                          Of{"Kinks", kKinks, "g", "routh", 48}),
                          [](const auto& p) { return std::string(p.param.name); });
 
-// Other coordinates are eliminated on the way, which builds expressions: computed in graphs where others have left
-// theirs, some of these cases have other last bits.
+// Coordinates are eliminated anew on the way, which builds expressions. In graphs that hold the expressions of other
+// cases, some of these cases would have other last bits.
 TEST(Ensemble, WhatOneCaseBuildsIsNotSeenByAnother) {
   Sweep run(test::shipped_text("zoo/double-pendulum-cartesian"), "chaplygin");
   run.options.varied = {initial(0, 1)};
@@ -526,7 +526,7 @@ TEST(Ensemble, CasesWithEventsAreWhatSimulateMakesOfThem) {
   EXPECT_GT(hit, 5U);
 }
 
-// Without the coefficient of the file the equations have another structure: the case is derived anew.
+// Without the coefficient of the file the equations have another structure, so the case is derived anew.
 TEST(Ensemble, AnotherStructureIsDerivedAnew) {
   const char* const text = R"toml(
 coordinates = ["x", "y"]
@@ -565,8 +565,8 @@ x = 1
   EXPECT_EQ(run.report.in_workspaces, 1U);
 }
 
-// A coordinate that follows from the others has no velocity in a run, and none in a case; one that follows beside others
-// that move has one.
+// A coordinate that follows from the others has no velocity in a run, and none in a case. If it follows beside others
+// that move, it has one.
 TEST(Ensemble, AVelocityThatARunDoesNotHaveHasNoNumber) {
   const std::string text = R"toml(
 coordinates = ["x"]
@@ -598,7 +598,7 @@ monitor.twice = "2*x"
     EXPECT_TRUE(method == Method::runge_kutta || run.report.in_workspaces == 0);
   }
 
-  // A case of another structure: with a mass the motion has velocities.
+  // A case with a mass has another structure, and its motion has velocities.
   Sweep mass(text);
   mass.options.varied = {parameter(mass.model(), "m")};
   mass.cases({{Rational(0)}, {Rational(1)}});
@@ -689,7 +689,7 @@ TEST(Ensemble, TheFileNeedsNoStartOfItsOwn) {
   EXPECT_EQ(results.list[2].last[0], simulated(kPendulum, {}, 1)[1]);
 }
 
-// Of nine pendulums the first, the middle and the last are compared with sharper runs.
+// Of nine pendulums, the first, the middle and the last are compared with runs of smaller tolerance.
 TEST(Ensemble, SaysHowExactItsResultsAre) {
   Sweep s(kPendulum);
   s.options.varied = {parameter(s.model(), "g")};
@@ -709,7 +709,7 @@ TEST(Ensemble, SaysHowExactItsResultsAre) {
   const std::vector<CaseResult> sharp = s.go();
   ASSERT_TRUE(s.report.error.error);
   EXPECT_LT(s.report.error.error->worst().error, coarse.error->worst().error / 1000);
-  // No case that was looked at is worse than what is said of it, coordinates by their own size.
+  // No compared case has a larger error than the report says, coordinates in units of their own size.
   double most[2] = {0, 0};
   for (const std::size_t k : coarse.cases)
     for (std::size_t i = 0; i < 2; ++i)
@@ -718,7 +718,7 @@ TEST(Ensemble, SaysHowExactItsResultsAre) {
   EXPECT_GE(std::max(most[0], most[1]), coarse.error->kinds[0].error / 10);
 }
 
-// Also where events reset the state.
+// The error is also reported if events reset the state.
 TEST(Ensemble, SaysHowExactCasesWithEventsAre) {
   Sweep s(kBall);
   s.options.varied = {parameter(s.model(), "e")};
@@ -730,8 +730,8 @@ TEST(Ensemble, SaysHowExactCasesWithEventsAre) {
   EXPECT_GE(s.report.error.error->worst().digits, 12);
 }
 
-// Other roundings are a kernel's. Where accelerations enter nonlinearly there is none, and the second run is in wider
-// numbers.
+// A kernel makes the second run with other roundings. If accelerations enter nonlinearly there is no kernel, and the
+// second run is in wider numbers.
 TEST(Ensemble, ComparesWithOtherRoundingsWhereAKernelMakesTheMotion) {
   constexpr const char* kSpring = R"(coordinates = ["x"]
 parameters = {k = 0.3}
@@ -755,7 +755,7 @@ x = 1
   EXPECT_NE(means("x''^3").find("in long double"), std::string::npos) << means("x''^3");
 }
 
-// Results and second runs compute a monitor in long double, where its terms cancel alike.
+// Results and second runs compute a monitor in long double, where its terms cancel in the same way.
 TEST(Ensemble, CountsWhatCancelsInBothRuns) {
   Sweep s(R"(coordinates = ["x"]
 parameters = {R = 1e6}

@@ -1,5 +1,5 @@
-// How often events fire in a motion, and when first: those of bouncing balls against closed forms, with events that reset and
-// with contacts, in lanes, alone and without a kernel.
+// The number of events in a motion and the time of the first: bouncing balls are compared with closed forms, with
+// events that reset and with contacts, in lanes, alone and without a kernel.
 #include <cmath>
 #include <cstring>
 
@@ -80,7 +80,7 @@ struct Sweep {
   EnsembleReport report;
 };
 
-// The times of the impacts: a flight after the impact n takes e^n of the time up and down before the first.
+// The times of the impacts: the flight after impact n takes e^n times twice the fall to the first impact.
 std::vector<double> impacts(double e) {
   std::vector<double> times;
   double flight = 2 * std::sqrt(0.2);
@@ -88,7 +88,7 @@ std::vector<double> impacts(double e) {
   return times;
 }
 
-// The first time at height 0.4 on the way up, if the rebound e^2 is as high.
+// The first time at height 0.4 on the way up, not a number if the rebound e^2 is lower.
 double first_rise(double e) {
   const double v = e * std::sqrt(20.0), root = v * v - 8;
   return root <= 0 ? NAN : std::sqrt(0.2) + (v - std::sqrt(root)) / 10;
@@ -140,7 +140,7 @@ TEST(EventReduction, ThreadsAndLanesHaveNoInfluence) {
   }
 }
 
-// Cases that `simulate` computes, each in a workspace of its own.
+// `simulate` computes each of these cases in a workspace of its own.
 TEST(EventReduction, CasesInWorkspacesCountTheSame) {
   Sweep run(std::string(kBall) + kReset, {"count(bounce)", "first(bounce)"});
   run.options.own_motion = [](Workspace& s, const SimulationOptions& o, RowSink& rows) {
@@ -175,7 +175,7 @@ TEST(EventReduction, AContactHitsAsOftenAsItsClosedForm) {
   }
 }
 
-// An event of the model that ends a motion with contacts leaves its state there, at none of the times of rows.
+// An event of the model that ends a motion with contacts leaves the state at its time, which is no time of a row.
 TEST(EventReduction, AStopAmongContactsHasAState) {
   const std::string stop = R"toml(
 [[event]]
@@ -199,7 +199,7 @@ stop = true
   }
 }
 
-// Impacts that add up to t1 (1 + e)/(1 - e) end there.
+// The impacts add up to the time t1 (1 + e)/(1 - e), at which the ball comes to rest.
 TEST(EventReduction, AContactComesToRestOnce) {
   Sweep run(std::string(kBall) + kContact, {"count(floor.rests)", "first(floor.rests)"});
   run.options.to = 4;
@@ -208,7 +208,7 @@ TEST(EventReduction, AContactComesToRestOnce) {
   EXPECT_NEAR(r.reduced[1], std::sqrt(0.2) * 1.65 / 0.35, 1e-9);
 }
 
-// A motion with a stretch by BDF has no polynomials there, and all of its events.
+// A motion with a stretch by BDF has no polynomials in it, but all of its events.
 TEST(EventReduction, EventsStayWithoutPolynomials) {
   Sweep run(std::string(kBall) + kReset, {"max(height)", "count(bounce)", "mean(height)", "first(bounce)"});
   Reducer reducer(run.options.reductions);
@@ -236,7 +236,7 @@ TEST(EventReduction, EventsStayWithoutPolynomials) {
   EXPECT_TRUE(std::isnan(values[3]));
 }
 
-// No consistent start: there is no motion, and so no number of events.
+// Without a consistent start there is no motion, and so no number of events.
 TEST(EventReduction, WithoutAMotionThereIsNoNumber) {
   Sweep run(std::string(kBall) + kContact, {"count(floor.hits)"});
   run.options.varied = {{Varied::Kind::initial, 0, 0, "z"}};

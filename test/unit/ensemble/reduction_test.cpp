@@ -1,5 +1,5 @@
-// Extremes and means of a motion: those of polynomials against fine sampling, those of cases against dense rows, and the
-// same bits for any number of threads and lanes.
+// Extremes and means of motions: of polynomials, compared with fine sampling, and of cases, compared with dense rows.
+// The bits are the same for any number of threads and lanes.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -36,7 +36,7 @@ guess = {y = -1}
 height = "y + l"
 )toml";
 
-// The same with an event, which no plain case has, that ends the motion.
+// An event that ends the motion of some cases; no case in lanes has an event.
 const char* const kStop = R"toml(
 [[event]]
 name = "turned"
@@ -76,7 +76,7 @@ struct Sweep {
     report = ensemble(scenario, options, results);
     return results.list;
   }
-  // x = cos t, up to t = 10.
+  // One case, x = cos t up to t = 10.
   CaseResult one() {
     options.to = 10;
     options.cases = 1;
@@ -86,7 +86,7 @@ struct Sweep {
     report = ensemble(scenario, options, results);
     return results.list.at(0);
   }
-  std::optional<OpenModel> open;  // in whose graph the formulas are
+  std::optional<OpenModel> open;  // its graph holds the formulas
   Scenario scenario;
   EnsembleOptions options;
   EnsembleReport report;
@@ -121,7 +121,7 @@ TEST(Reduction, TheGreatestValueOfAPolynomialIsFound) {
     }
 }
 
-// x = sin t, and so many other formulas that series of several of them are parts of those of the unknowns.
+// x = sin t, with so many other formulas that series of several formulas are parts of the series of the unknowns.
 TEST(Reduction, AnyNumberOfFormulasIsFollowed) {
   for (const int others : {0, 3, 13, 15, 20, 40}) {
     std::vector<std::string> words{"last(x)", "mean(x)", "last(v)", "mean(v)"};
@@ -147,7 +147,7 @@ output.v = "x'"
   }
 }
 
-// The motion is a polynomial, and one step is the whole of it: formulas have series that converge less far, or none.
+// The motion is a polynomial and needs one step only: the series of some formulas converge less far, or do not exist.
 TEST(Reduction, FormulasNeedNotConvergeWithTheMotion) {
   Sweep run(R"toml(
 coordinates = ["x", "z"]
@@ -175,8 +175,8 @@ initial = {"z'" = 10}
   EXPECT_EQ(run.report.in_workspaces, 0U);
 }
 
-// Last values are those of the formulas at the end: cos(40 x) turns often in the one step of the motion, which stays one step,
-// and the distance has no series at the start.
+// Last values are the values of the formulas at the end: cos(40 x) turns often in the one step of the motion, which
+// stays one step, and the distance has no series at the start.
 TEST(Reduction, LastValuesShortenNoStep) {
   const std::string text = R"toml(
 coordinates = ["x", "z"]
@@ -202,7 +202,7 @@ initial = {"z'" = 10}
   EXPECT_EQ(run.report.in_workspaces, 0U);
 }
 
-// A norm at rest, and an angle at the ends of its range: values beside them stand for theirs.
+// A norm at rest, and an angle at the ends of its range: values beside these points are taken.
 TEST(Reduction, FormulasMayHaveNoDerivativesOnTheWay) {
   Sweep run(R"toml(
 coordinates = ["x"]
@@ -227,7 +227,8 @@ initial = {x = 1}
   EXPECT_TRUE(report.without_value.empty());
 }
 
-// x = cos t passes 0.3 three times, in steps at whose start the formula and its derivatives are 0 in double: exp(-49000).
+// x = cos t passes 0.3 three times, in steps at whose start the formula and its derivatives are 0 in double:
+// exp(-49000).
 TEST(Reduction, APulseWithinAStepIsSeen) {
   constexpr double kMean = 0.00176269447011, kSign = -0.0575222039231;  // mpmath
   Sweep run(kOscillator, {"max(exp(-100000*(x - 0.3)^2))", "mean(exp(-100000*(x - 0.3)^2))",
@@ -255,7 +256,7 @@ TEST(Reduction, AFormulaWithoutAValueDoesNotEndTheMotion) {
     ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
     EXPECT_NEAR(r.last[0], std::cos(10), 1e-12);
     for (std::size_t k = 0; k < 8; ++k) EXPECT_TRUE(std::isnan(r.reduced[k])) << run.options.reductions.list[k].name;
-    EXPECT_NEAR(r.reduced[8], 0.774806089878175, 1e-11);  // mpmath, as the others
+    EXPECT_NEAR(r.reduced[8], 0.774806089878175, 1e-11);  // by mpmath, as the others
     EXPECT_NEAR(r.reduced[9], 0.832579052528112, 1e-10);
     EXPECT_NEAR(r.reduced[10], -0.656560131336238, 1e-8);
     EXPECT_NEAR(r.reduced[11], 0, 1e-12);
@@ -265,7 +266,7 @@ TEST(Reduction, AFormulaWithoutAValueDoesNotEndTheMotion) {
   }
 }
 
-// 3 x - y is round-off all along the motion, and passes zero wherever it likes: the motion is that without the reduction.
+// 3 x - y is round-off all along the motion and changes its sign anywhere; the motion is the one without the reduction.
 TEST(Reduction, KinksOfRoundOffMakeNoStepShort) {
   const std::string text = R"toml(
 coordinates = ["x", "y"]
@@ -286,7 +287,7 @@ initial = {x = 0.1, y = 0.3}
   }
 }
 
-// Kinks of a formula that come nearer and nearer to a moment neither end the motion nor take it steps without end.
+// Kinks of a formula that accumulate at a time neither end the motion nor cost endless steps.
 TEST(Reduction, KinksThatAddUpDoNotEndTheMotion) {
   Sweep run(kOscillator, {"max(abs((t - 2)*sin(1/(t - 2))))"});
   run.options.most_steps = 4000;
@@ -296,7 +297,7 @@ TEST(Reduction, KinksThatAddUpDoNotEndTheMotion) {
   EXPECT_NEAR(r.reduced[0], 8 * std::sin(0.125), 1e-12);
 }
 
-// The pendulum rises to the height of its start: y = -sqrt(l^2 - x^2). Between the ends of steps lie its lowest points.
+// The pendulum rises to the height of its start: y = -sqrt(l^2 - x^2). Its lowest points lie between the ends of steps.
 TEST(Reduction, ExtremesAreThoseOfTheMotion) {
   Sweep run(kPendulum, {"max(height)", "min(height)", "last(height)", "mean(x')", "max(abs(x))"});
   const auto list = run.go(4, 1);
@@ -311,7 +312,7 @@ TEST(Reduction, ExtremesAreThoseOfTheMotion) {
   }
 }
 
-// Plain cases in lanes, alone, and by `simulate` find the same, and the number of threads has no influence on a bit.
+// Cases in lanes, alone, and by `simulate` give the same values, and the number of threads changes no bit.
 TEST(Reduction, ThreadsAndLanesHaveNoInfluence) {
   const std::vector<std::string> words = {"max(x')", "min(y)", "mean(height)", "max(lambda)"};
   Sweep run(kPendulum, words);
@@ -361,7 +362,7 @@ TEST(Reduction, AnEventThatEndsACaseIsNamed) {
   EXPECT_TRUE(stopped && went_on);
 }
 
-// A row for each case and time, also for times that the motion does not reach.
+// The table has a row for each case and time, also for times that the motion does not reach.
 TEST(Reduction, TablesAreLongWithTimes) {
   Sweep run(std::string(kPendulum) + kStop, {"min(x)"});
   run.options.at = {Rational(1, 2), Rational(5, 2)};
@@ -384,7 +385,7 @@ TEST(Reduction, TablesAreLongWithTimes) {
   }
 }
 
-// The residual reports of some cases.
+// Some cases have residual reports.
 TEST(Reduction, ResidualsOfSomeCasesAreLookedAt) {
   Sweep run(kPendulum, {});
   run.options.estimate = ErrorEstimate::short_runs;

@@ -1,4 +1,4 @@
-// A sweep takes the number of lanes in which a case takes less time.
+// A sweep chooses the number of lanes in which a case takes the least time.
 #include <gtest/gtest.h>
 
 #include "ensemble/lanes/sweep_lanes.h"
@@ -26,14 +26,14 @@ class SweepOfDiscs : public testing::Test {
   }
 
   SweepLanes::Turn begin(SweepLanes& sweep) { return sweep.begin(plan_, next_ += 32); }
-  // Without machine code no group tells what a case takes.
+  // Without machine code the groups do not show the time of a case.
   void expect_no_choice() {
     SweepLanes sweep(kCases, 0, 1, tiers().back().lanes);
     end_groups(sweep, 1, 0.02);
     for (int k = 0; k < 100; ++k) EXPECT_FALSE(begin(sweep).compiled);
     EXPECT_EQ(begin(sweep).lanes, 1);
   }
-  // Begins groups that take no time until one has code, and tells its lanes.
+  // Begins groups that take no time until one has machine code. Returns its number of lanes.
   int begin_until_compiled(SweepLanes& sweep) {
     SweepLanes::Turn turn;
     while (!turn.compiled) turn = begin(sweep);
@@ -44,7 +44,7 @@ class SweepOfDiscs : public testing::Test {
     while (begin(sweep).lanes == lanes) {
     }
   }
-  // Ends enough groups for a judgement.
+  // Ends enough groups for a decision.
   void end_groups(SweepLanes& sweep, int lanes, double seconds) {
     for (int k = 0; k < 8; ++k) sweep.end({lanes, test::compiler_expected()}, 32, seconds);
   }
@@ -69,7 +69,7 @@ TEST_F(SweepOfDiscs, GoesOnWithTheNumberOfLanesThatTakesLessTime) {
     ASSERT_EQ(begin_until_compiled(sweep), 1);
     end_groups(sweep, 1, 0.02);
     begin_until_lanes_change(sweep);
-    sweep.end({wide, true}, 32, 0.02);  // one group tells little
+    sweep.end({wide, true}, 32, 0.02);  // one group is not enough for a decision
     EXPECT_EQ(begin(sweep).lanes, wide);
     end_groups(sweep, wide, wide_is_faster ? 0.01 : 0.03);
     begin(sweep);
@@ -77,7 +77,7 @@ TEST_F(SweepOfDiscs, GoesOnWithTheNumberOfLanesThatTakesLessTime) {
   }
 }
 
-// Groups without machine code, and a sweep that is at its end, are no reason to try more lanes.
+// Groups without machine code, and a sweep near its end, are no reason to try more lanes.
 TEST_F(SweepOfDiscs, TriesMoreLanesOnlyIfTheCasesLeftPayForTheCompiler) {
   if (!test::compiler_expected()) return expect_no_choice();
   const int wide = tiers().back().lanes;

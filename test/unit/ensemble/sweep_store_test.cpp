@@ -54,7 +54,7 @@ TEST_F(SweepStoreTest, GoesOnWhereItStopped) {
     EXPECT_EQ(store.commit(1, part(4, 8)), "");
   }
   SweepRequest again = request();
-  again.chunk = 5;  // that of the folder holds
+  again.chunk = 5;  // the chunk of the folder is used
   const SweepStore store = SweepStore::open(folder, again, "2");
   EXPECT_EQ(store.request().chunk, 4U);
   EXPECT_EQ(store.missing(), (std::vector<std::size_t>{0, 2}));
@@ -67,7 +67,7 @@ TEST_F(SweepStoreTest, GoesOnWhereItStopped) {
   EXPECT_EQ(p.outcomes, (std::map<std::string, std::size_t>{{"finished", 3}, {"singular", 1}}));
 }
 
-// A case has a row at each of the times that are asked for.
+// A case has a row at each requested time.
 TEST_F(SweepStoreTest, ACaseWithSeveralRowsCountsOnce) {
   const SweepStore store = SweepStore::open(folder, request(), "1");
   ParquetTable rows;
@@ -137,7 +137,7 @@ TEST_F(SweepStoreTest, KeepsTheFilesOfTheModel) {
   model.tables.push_back({"b.csv", "0,1\n"});
   add_files(asked.asked, model);
   SweepStore::open(folder, asked, "1");
-  // Bytes that are not UTF-8 are lost, and the request agrees with itself.
+  // Bytes that are not UTF-8 are lost, and the stored request equals itself.
   const SourceText kept = model_asked(SweepStore::open(folder, asked, "1").request());
   EXPECT_EQ(kept.text, "title = \"a\"");
   ASSERT_EQ(kept.others.size(), 1U);
@@ -196,7 +196,7 @@ TEST_F(SweepStoreTest, RefusesForeignFoldersAndParts) {
   fs::remove(folder / "thesis.tex");
   const SweepStore store = SweepStore::open(folder, request(), "1");
   ASSERT_EQ(store.commit(0, part(0, 4)), "");
-  // A part of another place in the sweep, and one that was changed.
+  // One part belongs to another place of the sweep, one was changed.
   fs::copy_file(store.path_of(0), store.path_of(1));
   EXPECT_NE(message([&] { store.read(1); }).find("belongs to another sweep"), std::string::npos);
   EXPECT_NE(message([&] { store.progress(); }).find("belongs to another sweep"), std::string::npos);

@@ -15,7 +15,7 @@ mass = "m"
 position = "x*ex"
 )toml";
 
-// Points of a grid are computed when they are asked for: this grid would not fit into memory.
+// Points of a grid are computed on request: this grid would not fit into memory.
 TEST(Variation, AGridHasABillionPoints) {
   const auto model = test::model_of(kBead);
   Variation v;

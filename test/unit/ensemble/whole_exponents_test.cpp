@@ -1,4 +1,4 @@
-// Whole exponents that are parameters: x^n is x*x*x where n is 3, whatever the sign of x.
+// Exponents that are parameters and whole: x^n is x*x*x for n = 3, whatever the sign of x.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(WholeExponents, HaveValuesForEverySign) {
     EXPECT_NEAR(r.last("x"), with_number.last("x"), 1e-13) << text;
     EXPECT_NEAR(r.last("x''"), with_number.last("x''"), 1e-13) << text;
   }
-  // Through zero, from below and from zero itself.
+  // The motion passes zero, from below and from zero itself.
   EXPECT_GT(with_number.last("x"), 0);
   EXPECT_TRUE(run(test::replaced(bead(force("(-k*x^n - 1)")), "x = -0.5", "x = 0")).report.outcome.ok());
 }
@@ -72,7 +72,7 @@ class Results final : public CaseSink {
   std::vector<CaseResult> list;
 };
 
-// Each case has its exponent.
+// Each case of a sweep has its own exponent.
 TEST(WholeExponents, OfTheCasesOfASweep) {
   EnsembleOptions o;
   o.to = 4;

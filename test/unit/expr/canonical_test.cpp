@@ -186,7 +186,7 @@ TEST(Folding, MultiplesOfPiComeOutOfSums) {
   }
 }
 
-// A point of a chain is the point before it and one link: x_i = x_(i-1) + l cos(q_i).
+// A point of a chain is the previous point and one link: x_i = x_(i-1) + l cos(q_i).
 std::size_t operations_of_a_chain(std::uint32_t links) {
   Graph g;
   Expr x = g.zero();
@@ -227,7 +227,7 @@ TEST(Summands, TheShortWayHasTheValueOfTheFlatTerms) {
   EXPECT_GT(short_ways, 10) << "otherwise this test shows nothing";
 }
 
-// A long sum is one term of another one, also where it is scaled: as a factor it keeps its content.
+// A long sum is one term of another sum, also if it is scaled: as a factor it keeps its content.
 TEST(Summands, LongSumsWithAContentAreFactors) {
   Graph g;
   g.allow(1'000'000);
@@ -245,7 +245,7 @@ TEST(Budget, StopsWhatUnfoldsWithoutEnd) {
   Expr e = g.jet(0, 0) + g.jet(1, 0);
   EXPECT_NO_THROW(for (int k = 0; k < 10; ++k) e = 1 + e * sin(e););
   EXPECT_THROW(e = total_derivative(e * exp(e), 20), Failure);
-  // Whoever may spend more goes on where it ended.
+  // With more operations allowed, the derivation continues.
   g.allow(1'000'000);
   EXPECT_NO_THROW(total_derivative(e));
 }
@@ -273,7 +273,7 @@ TEST(Rates, OfSharedPartsAreMadeOnce) {
   }
 }
 
-// What refers to a number, a node or the terms of one is read while the graph grows.
+// References to a number, a node or its terms are read while the graph grows.
 TEST(Canonical, WhatAGraphGivesNeverMoves) {
   Symbols s;
   const Expr e = 3 + Rational(22, 7) * s.x + s.y * s.a;

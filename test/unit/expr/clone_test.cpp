@@ -57,7 +57,8 @@ TEST(GraphClone, HasTheSameNodesAndGrowsAlone) {
   EXPECT_EQ(copy->size(), s.g.size() + 1);
 }
 
-// Ids decide the order of sums: what is built in a clone has those that it would have had.
+// Ids decide the order of sums: expressions that are built in a clone have the ids that they would have in the
+// original.
 TEST(GraphClone, GoesOnWithTheIdsOfTheOriginal) {
   Subject s;
   const auto copy = s.g.clone();

@@ -183,7 +183,7 @@ TEST(Depth, TotalDerivativeAndSubstitutionDoNotOverflow) {
   EXPECT_EQ(jet_order(e), 0);
 }
 
-// Runs a check in a process of its own that may use 1 GiB; exits 0 if it came to its end.
+// Runs a check in its own process with at most 1 GiB; the process exits with 0 if the check ends.
 void within_memory(void (*check)()) {
   const rlimit limit{1UL << 30, 1UL << 30};
   setrlimit(RLIMIT_AS, &limit);
@@ -204,7 +204,7 @@ TEST(Depth, PrintingADeepFormulaTakesMemoryInProportion) {
               testing::ExitedWithCode(0), "");
 }
 
-// Memory that the gradient of n nested functions leaves in use.
+// The memory in use by the gradient of n nested functions.
 std::size_t memory_of_gradient(int depth) {
   Graph g;
   const Expr e = deep(g, depth);

@@ -14,7 +14,7 @@ Node symbol(Kind kind, std::uint32_t index, unsigned order) {
   return n;
 }
 
-// Two symbols with one value would make rows parallel, and so a constraint redundant by accident.
+// Two symbols of equal value would make rows parallel, and so a constraint redundant by accident.
 TEST(GenericValue, IsAnotherForEverySymbol) {
   std::set<double> seen;
   std::size_t symbols = 0;

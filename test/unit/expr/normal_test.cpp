@@ -40,7 +40,7 @@ TEST(ProvedZero, ClaimsNothingFalse) {
     EXPECT_FALSE(proved_zero(n.number(text))) << text;
 }
 
-// e - e written in another way is zero; a perturbation of it by a term that is not zero anywhere must never be.
+// e - e written in another way is zero; with a term that is zero nowhere it must never be called zero.
 TEST(ProvedZero, SeesEveryRandomPerturbation) {
   const PrecisionScope precision(50);
   PlainNames n;
@@ -62,7 +62,7 @@ TEST(ProvedZero, SeesEveryRandomPerturbation) {
   EXPECT_GT(proofs, 400) << "of 450 identities, which hold by algebra and angle sums alone";
 }
 
-// Random candidates near zero: two random expressions are equal only if their values are.
+// Random expressions near zero: two of them are equal only if their values are.
 TEST(ProvedZero, NeverHoldsForWhatIsNumericallyNotZero) {
   const PrecisionScope precision(50);
   PlainNames n;

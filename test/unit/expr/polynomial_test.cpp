@@ -1,4 +1,4 @@
-// The remainder by relations that may divide is the remainder by all of them.
+// The remainder by the relations that may divide equals the remainder by all relations.
 #include <gtest/gtest.h>
 
 #include "expr/polynomial.h"
@@ -27,7 +27,7 @@ TEST_F(Remainder, WhatNoRelationDividesStays) {
   EXPECT_TRUE(Relations(ring).remainder(s * s).same(s * s));
 }
 
-// s^2 does not occur before r^2 is divided: the tail of one relation opens another.
+// s^2 occurs only after r^2 is divided: the remainder by one relation lets another one divide.
 TEST_F(Remainder, TailsOpenRelations) {
   const Poly one_minus_c2 = n(1) - c * c;
   EXPECT_TRUE(relations.remainder(r * r).same(one_minus_c2 + x));

@@ -33,7 +33,7 @@ TEST(Refute, FindsWhatIsNotZero) {
     EXPECT_TRUE(refuted(n.number(text))) << text;
 }
 
-// Never against a proof, and hardly ever idle.
+// A refutation never contradicts a proof, and nearly always succeeds.
 TEST(Refute, AgreesWithTheProofOfRandomExpressions) {
   PlainNames n;
   const std::vector<Expr> atoms = {n.number("x"), n.number("y"), n.number("a"), n.number("x'")};

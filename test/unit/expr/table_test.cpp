@@ -1,5 +1,5 @@
-// Tables against their definition: values at knots, derivatives by differences, the smoothness of each fit, monotone
-// stays monotone.
+// Tables are compared with their definition: values at knots, derivatives by differences, the smoothness of each fit;
+// monotone data stay monotone.
 #include <gtest/gtest.h>
 
 #include "expr/diff.h"

@@ -1,4 +1,4 @@
-// Units: exact factors, prefixes, and how a number with a unit is read.
+// Units: exact factors, prefixes, and the reading of a number with a unit.
 #include <gtest/gtest.h>
 
 #include "formula/formula.h"
@@ -42,7 +42,7 @@ TEST(Units, AreExact) {
     EXPECT_FALSE(read_unit(none)) << none;
 }
 
-// Every row is its own unit and no row is hidden by a prefix and another.
+// Each row of the table is found by its name; no prefix with another unit hides it.
 TEST(Units, OfTheTableAreFoundByTheirNames) {
   for (const UnitRow& r : unit_table()) {
     const auto u = find_unit(r.name);

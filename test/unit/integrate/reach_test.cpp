@@ -35,7 +35,7 @@ TEST(Reach, APolynomialIsKnownEverywhere) {
   EXPECT_EQ(log_reach<double>(c.data(), 4, 1e-300, std::log(1e-12)), 300);
 }
 
-// Nor does what is nothing but round-off shorten a step.
+// Round-off does not shorten a step either.
 TEST(Reach, RoundOffBoundsNothing) {
   const std::vector<double> c = {0, 0, 0, 0, 1e-40};
   EXPECT_EQ(log_reach<double>(c.data(), 4, 0, std::log(1e-12)), 300);

@@ -1,5 +1,5 @@
-// Errors of long motions grow as the root of their number of steps. Whole numbers by which a Taylor recurrence divides
-// are the same at every step: were their reciprocals rounded, errors would grow in proportion to the number of steps.
+// Errors of long motions grow as the root of the number of steps. A Taylor recurrence divides by the same whole numbers
+// at every step: if their reciprocals were rounded, errors would grow in proportion to the number of steps.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -17,13 +17,13 @@ using State = std::vector<long double>;  // x, x', y, y'
 // A particle of mass 1 in the plane.
 struct Conservative {
   const char *name, *potential;
-  State (*start)(long double);                         // of one of many motions, 0..1
+  State (*start)(long double);                         // of one of many motions, by a number from 0 to 1
   long double (*value)(long double x, long double y);  // of the potential
   double bound;                                        // of the error of one step
 };
 
-// A function of each kind whose coefficients are divided by their order: powers, sines, functions by their derivative,
-// angles.
+// Each kind of function whose coefficients are divided by their order: powers, sines, functions given by their
+// derivative, angles.
 const Conservative kSystems[] = {
     {"kepler", "-(x^2 + y^2)^(-1/2)",
      [](long double u) { return State{1 - u / 2, 0, 0, std::sqrt((1 + u / 2) / (1 - u / 2))}; },
@@ -60,8 +60,8 @@ struct Motion {
   }
 };
 
-// The root of the mean square of the changes of the energy over some motions of so many steps, in round-offs (2^-53) of
-// what the energy is made of.
+// The root of the mean square of the change of energy over some motions with `steps` steps, in round-offs (2^-53) of
+// the size of the energy's terms.
 double change(const Conservative& c, std::size_t steps) {
   constexpr int kMotions = 6;
   const Motion motion(c);
@@ -86,8 +86,8 @@ double change(const Conservative& c, std::size_t steps) {
 
 class RoundOff : public testing::TestWithParam<int> {};
 
-// Were reciprocals of whole numbers rounded, the errors would be 4 to 18 times the bounds, for the cube roots 1.6
-// times; they are a third of them.
+// The errors are a third of the bounds. With rounded reciprocals of whole numbers they would be 4 to 18 times the
+// bounds, 1.6 times for the cube roots.
 TEST_P(RoundOff, OfTheEnergyGrowsAsTheRootOfTheSteps) {
   const Conservative& c = kSystems[GetParam()];
   constexpr std::size_t kSteps = 16000;

@@ -1,4 +1,4 @@
-// The coefficients against the order conditions: sum_i b_i Phi_i(t) = 1 / gamma(t) for every rooted tree t with up to 8
+// The coefficients satisfy the order conditions sum_i b_i Phi_i(t) = 1 / gamma(t) for every rooted tree t with up to 8
 // nodes (Butcher; Hairer, Nørsett & Wanner 1993, II.2).
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace method = dormand_prince;
 using Weights = std::array<long double, method::kStages>;
 using Stages = std::array<std::array<long double, method::kStages>, method::kStages>;
 
-// A rooted tree by its subtrees, numbers in a list in which smaller trees come first.
+// A rooted tree, given by the indices of its subtrees in a list in which smaller trees come first.
 struct Tree {
   std::vector<std::size_t> subtrees;
   int nodes = 1;
@@ -27,7 +27,7 @@ std::vector<Tree> trees(int most_nodes) {
   std::vector<Tree> all{{}};
   for (int nodes = 2; nodes <= most_nodes; ++nodes) {
     const std::size_t known = all.size();
-    // Subtrees in falling order, so that each set of them comes once.
+    // Subtrees are in falling order, so that each set of them occurs once.
     const std::function<void(Tree, std::size_t, int)> grow = [&](Tree t, std::size_t largest, int left) {
       if (left == 0) {
         for (std::size_t s : t.subtrees) t.nodes += all[s].nodes, t.density *= all[s].density;
@@ -94,7 +94,7 @@ TEST(DormandPrince, IsOfOrderEight) {
   }
 }
 
-// Mutants: a change of any coefficient in its 10th digit must be seen.
+// Mutants: a change of any coefficient in its 10th digit must be noticed.
 TEST(DormandPrince, EveryCoefficientCounts) {
   for (std::size_t i = 0; i < method::kStages; ++i) {
     if (method::b[i] != 0) {

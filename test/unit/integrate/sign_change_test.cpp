@@ -1,4 +1,4 @@
-// The first crossing of a polynomial against one that is looked for by brute force in many digits.
+// The first crossing of a polynomial, compared with a search by brute force in many digits.
 #include <cmath>
 #include <random>
 
@@ -32,7 +32,7 @@ std::optional<double> found(const std::vector<double>& c, double h, double floor
   return first_below<double>(c.data(), static_cast<int>(c.size()) - 1, h, floor);
 }
 
-// The first sample below -floor on a fine grid, then bisected, in 40 digits.
+// Finds the first sample below -floor on a fine grid, then bisects, in 40 digits.
 std::optional<double> brute(const std::vector<double>& c, double h, double floor) {
   const PrecisionScope precision(40);
   const std::vector<Multi> wide(c.begin(), c.end());
@@ -61,7 +61,7 @@ TEST(FirstBelow, AgreesWithBruteForce) {
     const double h = i % 2 ? 1 : -1;
     constexpr double kFloor = 1e-13;
     const auto fast = found(c, h, kFloor), slow = brute(c, h, kFloor);
-    // Two roots between samples are the one thing that the samples cannot see.
+    // The samples can miss two roots between them.
     if (fast && (!slow || std::abs(*slow) > std::abs(*fast) + 1e-9)) {
       const PrecisionScope precision(40);
       const std::vector<Multi> wide(c.begin(), c.end());
@@ -102,7 +102,7 @@ TEST(FirstBelow, AtTheEnds) {
   EXPECT_FALSE(found({1, NAN}, 1));
 }
 
-// The mutant: a search that only looks at both ends of the interval misses the dip.
+// The mutant: a search that compares only both ends of the interval misses the dip.
 TEST(FirstBelow, IsNoLookAtTheEnds) {
   const std::vector<double> c = with_roots(1, {0.4, 0.6});
   EXPECT_GT(at(c, 0.0), 0);

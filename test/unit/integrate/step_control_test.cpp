@@ -31,7 +31,7 @@ TEST(StepControl, OrderFollowsFromTheTolerance) {
   EXPECT_EQ(least_work_order(std::log(0.5)), 4);
 }
 
-// At the order of Jorba & Zou a step is rho / e^2, at a greater one more: so the error stays what it is.
+// At the order of Jorba & Zou a step is rho / e^2, at twice this order rho / e: the error is the same.
 TEST(StepControl, ShrinksByTheSquareOfEAtTheOrderOfLeastWork) {
   const double tolerance = std::log(1e-15);
   EXPECT_EQ(step_shrink(tolerance, least_work_order(tolerance)), 2);
@@ -50,7 +50,8 @@ TEST(StepControl, AStepIsAPartOfTheRadiusOfConvergence) {
   EXPECT_NEAR(step(pole(quarter, 1, order + 2), 1, order), 0.25 * std::exp(-0.7 / (order - 1)), 1e-12);
 }
 
-// The velocity has a coefficient order + 1 times as large: its step is shorter by the root of that.
+// The coefficient of the velocity is `order` times as large, so its step is shorter by the factor order^(-1/(order -
+// 1)).
 TEST(StepControl, VelocitiesAreMeasuredToo) {
   const int order = 20;
   const auto c = pole(1.0, 1, order + 3);
@@ -58,7 +59,7 @@ TEST(StepControl, VelocitiesAreMeasuredToo) {
   EXPECT_NEAR(step(c, 2, order) / expected, 1, 1e-12);
 }
 
-// Relative to the size of x, but at least to 1; and each level of derivatives to its own.
+// The error is relative to the size of x or 1, whichever is larger; each level of derivatives has its own size.
 TEST(StepControl, IsRelativeToTheSize) {
   const int order = 20;
   auto small = pole(1.0, 1, order + 2), large = small;
@@ -67,14 +68,14 @@ TEST(StepControl, IsRelativeToTheSize) {
   const double one = step(pole(1.0, 1, order + 2), 1, order);
   EXPECT_NEAR(step(large, 1, order) / one, 1, 1e-12);
   EXPECT_NEAR(step(small, 1, order) / one, std::pow(1e6, 1.0 / order), 1e-9);
-  // An angle that has turned often does not loosen the tolerance of its velocity.
+  // The size of an angle that has turned often does not loosen the tolerance of its velocity.
   auto turned = pole(1.0, 1, order + 3);
   const double before = step(turned, 2, order);
   turned[0] = 1e4;
   EXPECT_EQ(step(turned, 2, order), before);
 }
 
-// A multiplier carries no error on; a step stays within half of its radius of convergence.
+// Errors of a multiplier do not add up, so its series only keeps a step within half of its radius of convergence.
 TEST(StepControl, StaysAwayFromPolesOfMultipliers) {
   const int order = 20;
   const auto smooth = pole(1e3, 1, order + 2);
@@ -84,7 +85,7 @@ TEST(StepControl, StaysAwayFromPolesOfMultipliers) {
   EXPECT_NEAR(step_size<double>(x, scales, order, 2), 0.5 * std::exp(-0.7), 1e-12);
 }
 
-// An orbit in metres does not lengthen the steps that an angle allows, unless both are measured against one size.
+// An orbit in metres does not lengthen the steps that an angle allows, unless both have one common size.
 TEST(StepControl, DimensionsAreMeasuredApart) {
   const int order = 20;
   auto orbit = pole(1e3, 1, order + 1), angle = pole(1.0, 1, order + 1);
@@ -100,8 +101,8 @@ TEST(StepControl, AMotionWithoutHigherTermsHasNoBound) {
   EXPECT_GT(step(line, 2, 6), 1e100);
 }
 
-// The integral of exp(20 x): the last two terms are to be below the tolerance, in relation to the first three over the
-// horizon, of which the third is the largest.
+// The integral of exp(20 x): the last two terms must be below the tolerance, relative to the largest of the first three
+// over the horizon, which is the third.
 TEST(StepControl, IntegralsShortenAStep) {
   const int order = 12;
   std::vector<double> c = {1};
@@ -115,7 +116,7 @@ TEST(StepControl, IntegralsShortenAStep) {
     EXPECT_GT(c.back() * std::pow(2 * h, order) / order, tolerance * size) << "nor is it much too short";
   }
   EXPECT_EQ(limited_by_quadrature(0.01, order, std::log(1e-6), 0, coefficient), 0.01);
-  // In relation to the integral so far.
+  // The error is relative to the integral so far.
   EXPECT_GT(limited_by_quadrature(1.0, order, std::log(1e-9), 1e6, coefficient),
             limited_by_quadrature(1.0, order, std::log(1e-9), 0, coefficient));
 }

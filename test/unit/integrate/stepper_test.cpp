@@ -11,7 +11,7 @@
 namespace anholon::stepper_test {
 namespace {
 
-// One model from text to stepper; the parts stay together, for each refers to the one before.
+// The stages of one model from its text to the stepper; each refers to the one before.
 struct Motion {
   std::shared_ptr<const Model> model;
   Mechanics m;
@@ -77,7 +77,7 @@ std::vector<Wider<N>> state_at(const Motion& motion, const Stepper<N>& s, const 
   return state;
 }
 
-// The state at `end` of the motion that has `state` at `begin`.
+// The state at `end` of the motion whose state at `begin` is given.
 using State = std::vector<long double>;
 State moved(const Motion& motion, long double begin, const State& state, long double end, double tolerance = 1e-15) {
   Stepper<double> s = stepper<double>(motion, tolerance);
@@ -105,7 +105,7 @@ TEST(Stepper, MeasuredOrderIsTheStatedOne) {
   for (int order : {4, 5, 8, 12}) {
     const double coarse = oscillator_error(motion, order, 16), fine = oscillator_error(motion, order, 32);
     const double measured = std::log2(coarse / fine);
-    // One more power of h may be gained for positions; never one less.
+    // Positions may gain one more power of h, but never lose one.
     EXPECT_GT(measured, order - 0.2);
     EXPECT_LT(measured, order + 1.2);
   }
@@ -120,8 +120,8 @@ TEST(Stepper, KeepsItsToleranceOnAPendulumOfKnownEnergy) {
   }
 }
 
-// x'' = 0, x' = 1/3: after 10^5 steps the position is the exact one to a round-off. Plain summation misses by many. In
-// long double, where the state is kept in the type of the coefficients.
+// x'' = 0, x' = 1/3: after 10^5 steps the position is exact to a round-off, while plain summation would be off by many.
+// The test uses long double, in which the state has the type of the coefficients.
 TEST(Stepper, CompensatedSumsDoNotGatherRoundOffs) {
   const int steps = 100000;
   const Motion motion(line("0", "x = 0\n\"x'\" = \"1/3\"\n"));
@@ -144,8 +144,8 @@ TEST(Stepper, CompensatedSumsDoNotGatherRoundOffs) {
 const char* const kModels[] = {"zoo/chaplygin-sleigh", "zoo/fourbar", "zoo/rolling-coin",
                                "papers/luo-zhao-example-2-plane-frame"};
 
-// d = 2 for coordinates and 0 for multipliers in these models: the state of the expansion is (q, q') one after the
-// other.
+// In these models d = 2 for coordinates and 0 for multipliers, so the state of the expansion is the sequence of (q,
+// q').
 TEST(Stepper, DenseOutputIsTheMotionThere) {
   for (const char* name : kModels) {
     const Motion motion(test::shipped_text(name));
@@ -172,7 +172,7 @@ TEST(Stepper, BackwardsItReturnsToTheStart) {
   }
 }
 
-// A scleronomic system under forces of position: turned velocities lead back along the same path.
+// A scleronomic system under forces of position returns along its path if its velocities are reversed.
 TEST(Stepper, TimeReversal) {
   for (const char* name : {"zoo/chaplygin-sleigh", "zoo/rolling-coin"}) {
     const Motion motion(test::shipped_text(name));
@@ -201,7 +201,7 @@ TEST(Stepper, ConstraintsHoldToRoundOffAlongTheWay) {
 // ---- by a kernel
 // ------------------------------------------------------------------------------------------------------------
 
-// Where a kernel makes all expansions that it can.
+// A stepper with a kernel that makes all expansions that it can.
 struct Accelerated {
   explicit Accelerated(const Motion& motion, int order = 0, bool ordinary = true)
       : start(motion.start<long double>()), steps(motion.stepping, motion.parameters_in<double>(),
@@ -225,7 +225,7 @@ struct Accelerated {
   Stepper<double> steps;
 };
 
-// x = -cos t; (x + away) y' = 0 loses its hold where x + away = 0, and no multiplier has a pole there.
+// x = -cos t; (x + away) y' = 0 does not determine y' at x + away = 0, where no multiplier has a pole.
 std::string loses_hold(const std::string& away) {
   return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + "
          "y*ey\"\n[[force]]\nname = \"f\"\non = \"p\"\nvector = \"-x*ex\"\n"
@@ -235,7 +235,7 @@ std::string loses_hold(const std::string& away) {
 
 TEST(ByKernel, ASingularPointWithinAStepIsSeen) {
   const Motion motion(loses_hold("0"));
-  // Of order 19 two steps make the half period, and the reference comes to the second.
+  // With order 19 two steps make the half period, and the reference expansion comes with the second.
   for (const int order : {15, 17, 19}) {
     Accelerated a(motion, order);
     ASSERT_TRUE(a.steps.accelerated());
@@ -246,7 +246,8 @@ TEST(ByKernel, ASingularPointWithinAStepIsSeen) {
   }
 }
 
-// x = -cos t loses its hold where it meets -0.3 t: the time enters J itself, also when the stepper looks back.
+// x = -cos t meets -0.3 t, where the constraint does not determine y'. The time enters J itself, also when the stepper
+// looks back.
 TEST(ByKernel, ASingularPointThatDependsOnTimeIsSeen) {
   const double met = 1.2019131636661846;  // cos t = 0.3 t
   const Motion motion(loses_hold("0.3*t"));
@@ -271,7 +272,7 @@ TEST(ByKernel, RegularMotionsAreNotStopped) {
   EXPECT_EQ(a.steps.expansions_by_kernel(), a.steps.expansions());
 }
 
-// Pivots pass zero here, J does not become singular: the kernel goes on.
+// Pivots pass zero here, but J stays regular: the kernel continues.
 TEST(ByKernel, PivotsMayChangeTheirSigns) {
   const Motion motion(test::replaced(test::shipped_text("zoo/trailers"), "n = 3", "n = 10"));
   Accelerated a(motion);
@@ -316,7 +317,8 @@ void expect_equal(const Stepper<double>& a, const Stepper<double>& b, const std:
   EXPECT_EQ(x.motion.record.worst_constraint, y.motion.record.worst_constraint) << where;
 }
 
-// A wall that its series do not show from afar, so that ends of steps are refused, and motions without any such thing.
+// A wall that the series do not show from afar, so that ends of steps are refused. The other motions of the test have
+// none.
 const char* const kWall =
     "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\nname = "
     "\"f\"\non = \"p\"\nvector = \"(-x - 20*tanh(30*(x - 2)))*ex\"\n[initial]\nx = -3\n\"x'\" = 0\n";
@@ -373,7 +375,7 @@ TEST(ByKernel, AStretchHasTheBitsOfItsSteps) {
   }
 }
 
-// A motion that grows without bound, which no step ahead of that end shows.
+// A motion that grows without bound, which no earlier step shows.
 const char* const kGrows =
     "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\nname = "
     "\"f\"\non = \"p\"\nvector = \"100*x*ex\"\n[initial]\nx = 1\n\"x'\" = 0\n";
@@ -400,7 +402,7 @@ struct InLanes {
     }
   }
   bool walking(std::size_t i) const { return steppers[i]->time() != ends[i] && !failed[i]; }
-  // One step at least in each lane; on request as many together as are ordinary.
+  // Makes at least one step in each lane; if `together`, all ordinary steps of the lanes at once.
   void go(bool together) {
     const auto each = [&](const auto& act) {
       for (std::size_t i = 0; i < steppers.size(); ++i)
@@ -464,13 +466,13 @@ void expect_the_bits_of_their_steppers(int lanes) {
   EXPECT_GT(aimed_together, 0) << "one has grown beyond all bounds after steps together";
 }
 
-// In one lane, which every machine has, and in as many as this machine has.
+// One lane, which every machine has, and the largest number of lanes of this machine.
 TEST(ByKernel, StepsOfLanesTogetherHaveTheBitsOfTheirSteppers) {
   expect_the_bits_of_their_steppers(1);
   expect_the_bits_of_their_steppers(tiers().back().lanes);
 }
 
-// x = -cos t: a stretch ends with the first step that begins where x has left its value.
+// x = -cos t: a stretch ends with the first step at whose begin x has left its kept value.
 TEST(ByKernel, AStretchEndsWhereAnUnknownLeavesItsValue) {
   const Motion motion(line("-x", "x = -1"));
   Accelerated a(motion, 12);
@@ -500,8 +502,7 @@ Outcome fate(const Motion& motion, double end, double& reached, std::size_t most
   return o;
 }
 
-// x'' = 2 x^3 with x = 1, x' = 1 is x = 1/(1 - t).
-// x, x' at t.
+// The state (x, x') of a motion on a line at the time t.
 std::vector<long double> line_at(const std::string& force, const std::string& initial, double t) {
   const Motion motion(line(force, initial));
   auto s = stepper<double>(motion, 1e-13);
@@ -556,13 +557,14 @@ TEST(Outcome, AnEndOutOfReachIsNoticedEarly) {
   for (int k = 0; k < 2000 && o.ok(); ++k) o = s.step(1e15L);
   EXPECT_EQ(o.kind, OutcomeKind::interrupted);
   EXPECT_LT(s.steps(), 1500U);
-  // An end within reach is no reason to stop.
+  // If the end is within reach the motion does not stop.
   ASSERT_TRUE(s.start(0, motion.start<long double>()).ok());
   o = {};
   for (int k = 0; k < 2000 && o.ok(); ++k) o = s.step(1e6L);
   EXPECT_TRUE(o.ok()) << o.message;
 }
 
+// x'' = 2 x^3 with x = 1, x' = 1 at the start is x = 1/(1 - t).
 TEST(Outcome, AMotionThatGrowsWithoutBoundBeforeItsPole) {
   double reached = 0;
   const Outcome o = fate(Motion(line("2*x^3", "x = 1\n\"x'\" = 1\n")), 2, reached);
@@ -579,8 +581,8 @@ TEST(Outcome, ExponentialGrowthIsABlowUp) {
   EXPECT_NEAR(reached, 230.26, 3);  // exp(t) = 1e100
 }
 
-// A weight thrown upward reaches the apex z' = 0, where the constraint says nothing, after t = z'(0)(1 + k^2)/g =
-// 0.2469.
+// A weight that is thrown upwards reaches its highest point z' = 0, where the constraint determines nothing, at t =
+// z'(0)(1 + k^2)/g = 0.2469.
 TEST(Outcome, TheApexOfTheAppellHamelMachine) {
   std::string text = test::replaced(test::shipped_text("zoo/appell-hamel"), "\"-sqrt(5)/3\"", "\"sqrt(5)/3\"");
   double reached = 0;

@@ -1,4 +1,5 @@
-// Linear models over values of a parameter: the equations of each value, and where eigenvalues cross the imaginary axis.
+// Linear models over values of a parameter: the equations at each value, and the values at which eigenvalues cross the
+// imaginary axis.
 #include <gtest/gtest.h>
 
 #include "linear/study.h"
@@ -21,7 +22,7 @@ Linearization over(const std::string& text, const std::string& values, bool equi
   return study.compute();
 }
 
-// The frequencies of a model without damping, the largest last.
+// The frequencies of a model without damping, in increasing order.
 std::vector<double> frequencies(const LinearResult& r) {
   EXPECT_TRUE(r.outcome.ok()) << r.outcome.message;
   std::vector<double> list;
@@ -44,7 +45,7 @@ void expect_near(const std::vector<double>& found, const std::vector<double>& ex
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], by);
 }
 
-// x'' = y - x, J y'' = x - 2 y: without J it is x'' = -x/2, with J = 1 the squares are (3 -+ sqrt 5)/2.
+// x'' = y - x, J y'' = x - 2 y: without J it is x'' = -x/2; with J = 1 the squared frequencies are (3 -+ sqrt 5)/2.
 std::string wheel(const std::string& inertia) {
   return "coordinates = [\"x\", \"y\"]\nparameters.J = " + inertia +
          "\nparticle = [{name = \"a\", mass = 1, position = \"x*ex\"}]\npotential.k = \"(x - y)^2/2 + y^2/2\"\n"
@@ -62,7 +63,7 @@ TEST(OverAParameter, AValueOfTheFileThatIsZero) {
     }
 }
 
-// (1 - p) x'' = -3 x - x': the order of the equations is another one at p = 1.
+// (1 - p) x'' = -3 x - x': at p = 1 the equations have another order.
 TEST(OverAParameter, ACoefficientThatVanishes) {
   for (const char* in_file : {"1", "0"}) {
     const Linearization l = over(std::string("coordinates = [\"x\"]\nparameters.p = ") + in_file +
@@ -81,7 +82,7 @@ TEST(OverAParameter, ACoefficientThatVanishes) {
   }
 }
 
-// The value of the file has no start, or no equations; those of the range have.
+// The value of the file has no start or no equations; the values of the range have both.
 TEST(OverAParameter, TheStartOfTheFileIsNotNeeded) {
   const Linearization rod = over(R"(coordinates = ["x", "y"]
 parameters.L = 0.1
@@ -117,7 +118,7 @@ std::string plane(const std::string& force, const std::string& initial = "x = 0"
          force + "\"}]\ninitial = {" + initial + "}\n";
 }
 
-// x acts on nothing to first order, and on y to the third.
+// x has no effect to first order, and acts on y to the third.
 TEST(Crossings, WhereACoordinateActsToHigherOrderOnly) {
   expect_near(places(over(plane("-x'*ex + (-(p - 1.1)*y - y' + x^3)*ey - z'*ez"), "p=0,3")), {1.1}, kRoot);
   expect_near(places(over(plane("(-x' - x^3)*ex - ((p - 1.1)*y + y')*ey - ((p - 2.2)*z + z')*ez"), "p=0,3")),
@@ -136,7 +137,7 @@ TEST(Crossings, ThatCancelEachOtherInPart) {
   EXPECT_TRUE(l.notes.empty());
 }
 
-// Between 0.7 and 1.2 the pair is unstable still. Values in any order, and twice.
+// Between 0.7 and 1.2 the pair is still unstable. Values come in any order and twice.
 TEST(Crossings, WhatIsStableAbove) {
   for (const char* values : {"p=0.5,2", "p=0.5,1,2", "p=2,0.5,1,0.5"}) {
     Linearization l = over(plane("(-3*x - (p - 1.2)*x')*ex - ((p - 0.7)*y + y')*ey - (z + z')*ez"), values);
@@ -148,7 +149,7 @@ TEST(Crossings, WhatIsStableAbove) {
   }
 }
 
-// The crossings at 0.7 and 1.5 cancel each other between 0 and 3; above 1.2 all is stable nevertheless.
+// The crossings at 0.7 and 1.5 cancel each other between 0 and 3; above 1.2 all eigenvalues are stable nevertheless.
 TEST(Crossings, StableAboveWhereOthersAreNotFound) {
   const Linearization l =
       over(plane("(-3*x - (p - 1.2)*x')*ex - ((1.5 - p)*y + y')*ey - ((p - 0.7)*z + z')*ez"), "p=0,3");
@@ -181,7 +182,7 @@ TEST(Crossings, WhereTwoMeetAtZero) {
   EXPECT_TRUE(l.notes.empty());
 }
 
-// The same with a pair on the right, of which one eigenvalue stays there as a real one.
+// A pair on the right meets at 0, and one of its eigenvalues stays unstable as a real one.
 TEST(Crossings, WhereAPairPartsAtZero) {
   const Linearization l = over(plane("(p - 1/3)*(x - x')*ex - (y + y')*ey - (z + z')*ez"), "p=0,3");
   expect_near(places(l), {1.0 / 3}, kRoot);

@@ -1,4 +1,4 @@
-// Which motions are steady, and what inputs and outputs stand for.
+// Which motions are steady, and how inputs and outputs enter linear models.
 #include <gtest/gtest.h>
 
 #include "linear/study.h"
@@ -36,7 +36,7 @@ TEST(Steadiness, AnExcitationIsNoEquilibrium) {
   }
 }
 
-// What only counts does not make a steady motion another one.
+// A coordinate that only counts does not make a steady motion unsteady.
 TEST(Steadiness, AnOdometerHasNoInfluence) {
   const auto text = [](const std::string& force) {
     return "coordinates = [\"x\", \"y\"]\nparticle = [{name = \"a\", mass = 1, position = \"x*ex + y*ey\"}]\n"
@@ -51,7 +51,7 @@ TEST(Steadiness, AnOdometerHasNoInfluence) {
   EXPECT_EQ(linear(text("(1 - x')*ex - (4 + odometer)*y*ey")).motion, LinearModel::Motion::unsteady);
 }
 
-// A disc whose radius makes the velocity of its point of contact an independent one rolls on a circle.
+// A disc rolls on a circle; its radius makes the velocity of the point of contact an independent one.
 const std::string kDisc = R"toml(coordinates = ["phi", "x", "psi", "y", "th"]
 parameters = {R = 3}
 gravity.field = "-9.81*ez"
@@ -70,13 +70,13 @@ TEST(Steadiness, CoordinatesWithoutWhichATurnIsSteady) {
   const LinearModel falls = linear(kDisc + "initial.conditions = [\"th' = 0\", \"psi' = 0.3\"]\n");
   EXPECT_EQ(falls.motion, LinearModel::Motion::unsteady);
   EXPECT_TRUE(falls.eliminate.empty());
-  // An equation holds x, and the turn is steady in no velocities.
+  // An equation holds x, so the turn is steady in no choice of velocities.
   const LinearModel pulled = linear(kDisc + steady + "force = [{on = \"disc\", vector = \"-x*ex/1000\"}]\n");
   EXPECT_EQ(pulled.motion, LinearModel::Motion::unsteady);
   EXPECT_TRUE(pulled.eliminate.empty());
 }
 
-// u = 8 (ref - x) - 4 x' and m x'' = u: what ref does, it does through u.
+// u = 8 (ref - x) - 4 x' and m x'' = u: the input ref acts through u.
 TEST(Signals, AnInputActsInOtherInputs) {
   const LinearModel m = linear(R"(coordinates = ["x"]
 particle = [{name = "p", mass = 2, position = "x*ex"}]
@@ -100,7 +100,7 @@ output.effort = "u"
   }
 }
 
-// The formula of u stands in the potential as it was read.
+// The formula of u is in the potential from the reading on.
 TEST(Signals, AnInputThatIsPutInBringsOthers) {
   const LinearModel m = linear(R"(coordinates = ["x"]
 particle = [{name = "p", mass = 2, position = "x*ex"}]
@@ -128,7 +128,7 @@ output.force = {value = "(u + u/2)*ex", unit = "kN"}
   EXPECT_NEAR(to_double(m.D(2, 0)), 0.0015, kExact);
 }
 
-// th'' = -9 th - u'', where B is by u alone; an input in a force acts by itself.
+// th'' = -9 th - u'': B holds the effect of u only, not of its rate; an input in a force acts by itself.
 TEST(Signals, TheRateOfAnInputIsNamed) {
   const auto text = [](const std::string& position, const std::string& force, const std::string& output) {
     return "coordinates = [\"th\"]\ninput.u = \"0\"\nparticle = [{name = \"p\", mass = 2, position = \"" + position +

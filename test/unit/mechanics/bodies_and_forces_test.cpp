@@ -1,5 +1,5 @@
-// Shapes are the mass points that have their moments; forces of places, dissipation functions and fields that vary are
-// the forces of points; a quaternion body on norm 1 is a rigid body.
+// A shape equals a set of mass points with the same moments. Forces at places, dissipation functions and varying fields
+// equal forces at points. A quaternion body on norm 1 is a rigid body.
 #include <gtest/gtest.h>
 
 #include "mechanics/conserved.h"
@@ -49,7 +49,8 @@ std::string body(const std::string& extra, const std::string& mass = "3") {
   return kHead + "[[body]]\nname = \"b\"\nmass = \"" + mass + "\"\ncenter = \"O\"\norientation = \"stone\"\n" + extra;
 }
 
-// Equal parts of the mass at the given places of the body: a rule that integrates second powers over the solid exactly.
+// Puts equal parts of the mass at the given places of the body: a rule that integrates second powers over the solid
+// exactly.
 std::string cloud(const std::vector<std::string>& places, const std::string& mass = "3") {
   std::string out = kHead;
   for (std::size_t k = 0; k < places.size(); ++k)
@@ -71,7 +72,7 @@ struct Solid {
   std::vector<std::string> places;
 };
 
-// The mean of r^2 over a disc is R^2/2, over a ball 3/5 R^2, of x^2 over a length l is l^2/12.
+// The mean of r^2 is R^2/2 over a disc and 3/5 R^2 over a ball; the mean of x^2 over a length l is l^2/12.
 std::vector<Solid> solids() {
   const std::vector<std::string> cross = {"R, 0, 0", "-R, 0, 0", "0, R, 0", "0, -R, 0"};
   std::vector<std::string> disc, ball, shell, cylinder;
@@ -139,8 +140,8 @@ TEST(Massless, CarriersGiveNothingAndRotorsTheirTurning) {
   EXPECT_TRUE(is_zero(m.T - Rational(1, 6) * pow(turning, 2)));
 }
 
-// A force at a place that runs along the body acts on the material point there: Q = F . dvel(B, P)/dq', no work along s
-// itself.
+// A force at a place that runs along the body acts on the material point there: Q = F . dvel(B, P)/dq', with no work
+// along s itself.
 TEST(ForceAtAMovingPlace, WorksThroughTheMaterialVelocity) {
   const PrecisionScope precision(40);
   const auto model = test::model_of(R"toml(coordinates = ["x", "y", "th", "s"]
@@ -198,7 +199,7 @@ TEST(Dissipation, IsTheForceThatItStandsFor) {
   EXPECT_TRUE(is_zero(sum(a.Q))) << "it is a column of its own";
 }
 
-// In a field that is linear in the place force and torque of the body are those of its points, exactly.
+// In a field that is linear in the place, force and torque of the body are exactly those of its points.
 TEST(GravityGradient, IsTheTorqueOnThePointsOfTheBody) {
   const std::string field =
       "[gravity]\nfield = [\"here.x*3 - here.y*here.x*0\", \"here.y - 2\", \"-4*here.z + here.y\"]\n";

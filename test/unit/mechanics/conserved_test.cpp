@@ -1,4 +1,4 @@
-// Integrals of the motion: what is found, that it is proved, and mutants for which nothing may be found.
+// Integrals of the motion: which are found, that they are proved, and mutants for which nothing may be found.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -37,19 +37,19 @@ TEST(Conserved, CentralForceKeepsEnergyAndAngularMomentum) {
 }
 
 TEST(Conserved, NotWhereTheForceTurnsTheMutantAway) {
-  // No symmetry, but a potential.
+  // The system has no symmetry, but a potential.
   EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "(x^2 + y^2)", "(x^2 + 2*y^2)"))), Names{"energy"});
-  // A damper: no energy; its force turns with the plane, but does not leave the momentum alone.
+  // A damper leaves no energy; its force turns with the plane, but changes the momentum.
   EXPECT_EQ(names_of(test::model_of(kPlane + "[[force]]\non = \"P\"\nvector = \"-vel(P.center)\"\n")), Names{});
-  // Explicit time.
+  // Time occurs explicitly.
   EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "k/2*(x^2 + y^2)", "sin(t)*x"))), Names{"momentum of y"});
-  // A mass that varies: what leaves takes its momentum with it. At rest where it joins, it brings none.
+  // The mass varies: expelled mass takes its momentum along, and mass that joins at rest brings none.
   EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "mass = \"m\"", "mass = \"m + t\""))), Names{});
   EXPECT_EQ(names_of(test::model_of(test::replaced(kPlane, "mass = \"m\"",
                                                    "mass = \"m + t\"\nexpelled_velocity = \"-vel(P.center)\"")))
                 .size(),
             1U);
-  // A constraint that rolls in time does work; one that touches both coordinates keeps the energy alone.
+  // A rheonomic constraint does work; one that touches both coordinates keeps only the energy.
   EXPECT_EQ(names_of(test::model_of(kPlane + "[[constraint]]\nname = \"drive\"\nequation = \"y' = x + t\"\n")),
             Names{});
   EXPECT_EQ(names_of(test::model_of(kPlane + "[[constraint]]\nname = \"blade\"\nequation = \"y' = x*x'\"\n")),
@@ -74,7 +74,7 @@ angle = "th"
   EXPECT_EQ(
       names_of(test::model_of(free + "[[constraint]]\nname = \"blade\"\nequation = \"y'*cos(th) = x'*sin(th)\"\n")),
       (Names{"energy", "momentum of th"}));
-  // The blade away from the mass centre: the plane may turn as a whole, but the blade does not let it.
+  // The blade is away from the mass centre: the plane may turn as a whole, but the blade prevents it.
   EXPECT_EQ(names_of(test::model_of(
                 free + "[[constraint]]\nname = \"blade\"\nequation = \"y'*cos(th) = x'*sin(th) + th'\"\n")),
             Names{"energy"});
@@ -122,15 +122,14 @@ field = "-mu/norm(here)^3*here"
   EXPECT_EQ(newton[0], "energy");
   EXPECT_EQ(names_of(test::model_of(test::replaced(fall, "norm(here)^3", "norm(here)^4"))).size(), 3U)
       << "no potential of that power is tried";
-  // Seen from a turning frame: the Jacobi integral, and the angular momentum about its axis; with omega(t) the latter
-  // alone.
+  // In a turning frame: the Jacobi integral, and the angular momentum about its axis; with omega(t) only the latter.
   const Names turning = names_of(test::model_of(fall + "[observer]\nspin = \"w*ez\"\n"));
   ASSERT_EQ(turning.size(), 2U);
   EXPECT_EQ(turning[0], "Jacobi integral");
   EXPECT_EQ(names_of(test::model_of(fall + "[observer]\nspin = \"w*t*ez\"\n")), Names{turning[1]});
 }
 
-// The proofs hold where formulas have derivatives: h + U keeps its value where U goes on, and not where U jumps.
+// The proofs hold where formulas have derivatives: h + U keeps its value if U is continuous, and not if U jumps.
 TEST(Conserved, IsMarkedWhereItsFormulaJumps) {
   const auto jumps = [](const std::string& potential, const std::string& more = "") {
     const auto model = test::model_of(
@@ -141,7 +140,7 @@ TEST(Conserved, IsMarkedWhereItsFormulaJumps) {
     EXPECT_FALSE(list.empty()) << potential;
     if (list.empty()) return false;
     EXPECT_EQ(list.front().name, "energy") << potential;
-    // A momentum is changed by a jump of the potential alone.
+    // Only a jump of the potential changes a momentum.
     for (std::size_t i = 1; i < list.size() && !list.front().jumps; ++i) EXPECT_FALSE(list[i].jumps) << list[i].name;
     return list.front().jumps;
   };
@@ -179,7 +178,7 @@ tension = "k*(norm(A.center - B.center) - l)"
   EXPECT_EQ(names_of(test::model_of(test::replaced(spring, "- l)", "- l) + x'"))), Names{});
 }
 
-// Of every shipped model what is found is proved again by the power identity, and found in time.
+// The power identity proves again, in time, each integral that is found for a shipped model.
 class OfShipped : public testing::TestWithParam<std::string> {};
 
 TEST_P(OfShipped, HasAnEnergyOnlyWhereThePowerIdentitySaysSo) {
@@ -188,7 +187,7 @@ TEST_P(OfShipped, HasAnEnergyOnlyWhereThePowerIdentitySaysSo) {
   for (const Conserved& c : conserved(m)) {
     EXPECT_EQ(c.value, sum(c.terms));
     if (c.name.rfind("momentum", 0) == 0) continue;
-    // d(h + U)/dt = noncons + dU/dt, U all terms but the first.
+    // d(h + U)/dt = noncons + dU/dt, where U is the sum of all terms but the first.
     Expr rate = power(m).noncons;
     for (std::size_t k = 1; k < c.terms.size(); ++k) rate += total_derivative(c.terms[k]);
     EXPECT_TRUE(proved_zero(rate)) << c.name;
@@ -198,7 +197,7 @@ TEST_P(OfShipped, HasAnEnergyOnlyWhereThePowerIdentitySaysSo) {
 INSTANTIATE_TEST_SUITE_P(Models, OfShipped, testing::ValuesIn(test::shipped_models()),
                          [](const auto& p) { return test::test_name(p.param); });
 
-// A step of a potential has a force where the motion meets it, and a step of a constraint makes velocities jump.
+// A step of a potential exerts a force when the motion meets it, and a step of a constraint makes velocities jump.
 TEST(Conserved, JumpsOfPotentialsAndConstraintsAreMarked) {
   const auto marked = [](const std::string& text) {
     const auto model = test::model_of(text);

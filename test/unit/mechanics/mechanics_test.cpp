@@ -1,6 +1,6 @@
-// A rigid body is the same as its particles: T, S and every generalized force of a body given by mass and inertia
-// against the particles that make it up, at random points of the jet space, with a tumbling and shaking observer and
-// guides that move.
+// A rigid body equals its particles: T, S and every generalized force of a body given by mass and inertia are compared
+// with those of the particles that form it, at random points of the jet space, with a tumbling and shaking observer and
+// moving guides.
 #include <gtest/gtest.h>
 
 #include "mechanics/mechanics.h"
@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kRounding = 1e-33;  // 40 digits, hundreds of operations
 
-// A body of four particles, of masses 1/2, 1, 3/2, 2 at (1, 0, 0), (0, 1, 1/2), (-1, 1/3, 0), (0, 0, -1) of a turned
-// frame; all its products of inertia are different from zero.
+// A body of four particles with masses 1/2, 1, 3/2, 2 at (1, 0, 0), (0, 1, 1/2), (-1, 1/3, 0), (0, 0, -1) of a turned
+// frame; all its products of inertia differ from zero.
 const int kParticles = 4;
 const Rational kMass[] = {Rational(1, 2), 1, Rational(3, 2), 2};
 const Rational kPlace[][3] = {{1, 0, 0}, {0, 1, Rational(1, 2)}, {-1, Rational(1, 3), 0}, {0, 0, -1}};
@@ -86,7 +86,7 @@ std::string matrix(const Rational& mistake) {
   return "inertia = [" + rows + "]\n";
 }
 
-// The same second moments as axes: E = sum e_k x_k x_k^T by completing squares, x_k not orthonormal.
+// The same second moments as axes: completing squares gives E = sum e_k x_k x_k^T with x_k that are not orthonormal.
 std::string axes() {
   const Moments m = moments();
   Rational e[3][3];
@@ -105,7 +105,7 @@ std::string axes() {
   return "axes = [" + list + "]\n";
 }
 
-// All kinetic quantities and inertial forces, in one column.
+// All kinetic quantities and inertial forces in one column.
 std::vector<Multi> quantities(const std::string& model_text, std::uint64_t seed) {
   const auto model = test::model_of(model_text);
   const Mechanics m = mechanics(*model);
@@ -191,7 +191,7 @@ vector = ["x'", "-y", "ps"]
 
 TEST(GeneralizedForces, AreTheirDefinitions) {
   const PrecisionScope precision(80);
-  const double tolerance = 1e-30;  // differences with h = 1e-20: h^2 is left
+  const double tolerance = 1e-30;  // differences with h = 1e-20 err by h^2
   const Multi h = test::raise(Multi(10), Rational(-20)), two_h = Multi(2) * h;
   const auto model = test::model_of(kSwarm);
   const Mechanics m = mechanics(*model);
@@ -250,7 +250,7 @@ TEST(GeneralizedForces, AreTheirDefinitions) {
     for (std::size_t k = 0; k < m.q.size(); ++k) {
       const double rounding = f == 6 ? 1e-28 : tolerance;  // second differences cancel 40 of 80 digits
       EXPECT_LE(test::distance(found[f].second[k], expected[f][k]), rounding) << found[f].first << " " << k;
-      // Mutant: each force twice is another force, wherever it is not zero.
+      // The mutant: twice a force is another force, if it is not zero.
       if (std::abs(to_double(expected[f][k])) > 1e-3) {
         EXPECT_GT(test::distance(Multi(2) * found[f].second[k], expected[f][k]), 1e-4);
       }
@@ -290,8 +290,8 @@ TEST(GeneralizedForces, ATensionPullsBothEndsTogether) {
   EXPECT_LE(test::distance(Q[1], Multi(-4)), kRounding);
 }
 
-// dh/dt at jets off the motion differs from the power by q'.(E - G): the rheonomic, variable-mass swarm in a moving
-// frame.
+// At jets off the motion, dh/dt differs from the power by q'.(E - G): tested on the rheonomic swarm with varying masses
+// in a moving frame.
 TEST(Power, IsTheRateOfTheEnergy) {
   const PrecisionScope precision(40);
   const auto model = test::model_of(kSwarm);

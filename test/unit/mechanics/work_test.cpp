@@ -1,4 +1,4 @@
-// The power of the reactions, by hand.
+// The power of the reactions, computed by hand.
 #include <gtest/gtest.h>
 
 #include "mechanics/work.h"
@@ -32,7 +32,7 @@ TEST(PowerFactor, OfConstraintsOnVelocities) {
 }
 
 TEST(PowerFactor, OfHigherOrders) {
-  EXPECT_EQ(factor("x'' = y*y''"), "x' - y*y'");  // linear, and it does work all the same
+  EXPECT_EQ(factor("x'' = y*y''"), "x' - y*y'");  // linear, and it does work nevertheless
   EXPECT_EQ(factor("x''' = c"), "x'");
 }
 

@@ -1,4 +1,4 @@
-// What is said of bodies, constraints and names beside formulas: along, unit quaternions, [notation], Greek letters.
+// Keys of bodies, constraints and names beside formulas: along, unit quaternions, [notation], Greek letters.
 #include <gtest/gtest.h>
 
 #include "expr/normal.h"

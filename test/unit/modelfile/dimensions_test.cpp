@@ -1,4 +1,4 @@
-// Units that fit together and units that do not; and that a file without units is never refused.
+// Units that fit together are accepted, others are refused; a file without units is never refused.
 #include <gtest/gtest.h>
 
 #include "modelfile/text/shipped.h"
@@ -128,7 +128,7 @@ TEST(DimensionsOfAModel, AreSetFromOutside) {
   EXPECT_NE(messages(found(kCar, {{"L", "3 s"}})), "") << "not the unit that it was declared with";
 }
 
-// A number that is a term of a sum of lengths is named; 0, factors, exponents and what has no unit are not.
+// A number that is a term of a sum of lengths is named; 0, factors, exponents and terms without a unit are not.
 TEST(DimensionsOfAModel, BareTermsOfASumAreNamed) {
   const auto warned = [](const char* to) {
     const std::vector<Diagnostic> list = found(test::replaced(kCar, "(x - l0)", to));
@@ -148,7 +148,7 @@ TEST(DimensionsOfAModel, BareTermsOfASumAreNamed) {
   ASSERT_EQ(list.size(), 1U);
   EXPECT_EQ(list[0].hint, "2 m, or 1*2 where the number has its unit in SI");
   EXPECT_EQ(list[0].span.column, std::string("vector = \"-k*(x - ").size() + 1);
-  // A file without units is not asked, and a value from outside is no term of the file.
+  // A file without units is not checked, and a value from outside is no term of the file.
   EXPECT_EQ(messages(found("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"(2 + x)*ex\"\n")),
             "");
   EXPECT_EQ(messages(found(kCar, {{"l0", "1 + 2"}})), "");
@@ -167,7 +167,7 @@ TEST(DimensionsOfAModel, NoShippedModelHasABareTerm) {
   EXPECT_GT(read, 60U);
 }
 
-// An axis alone is 1 along it, in whatever unit; with a factor it is a direction.
+// An axis by itself is 1 along it, in any unit; with a factor it is a direction.
 TEST(DimensionsOfAModel, OfAnAxisAloneAreFree) {
   EXPECT_EQ(messages(found(test::replaced(kCar, "dot(vel(P), T.x) = 36 km/h", "vel(P) = T.x"))), "");
   EXPECT_EQ(messages(found(test::replaced(kCar, "-g*ey", "-ey"))), "");
@@ -175,7 +175,7 @@ TEST(DimensionsOfAModel, OfAnAxisAloneAreFree) {
   EXPECT_NE(messages(found(test::replaced(kCar, "-g*ey", "-sin(th)*ey"))), "");
 }
 
-// The same nonsense without units is consistent with some, or nobody asked.
+// The same mistakes without units are consistent with some choice of units, or are not checked.
 TEST(DimensionsOfAModel, AreNotRefusedWithoutUnits) {
   EXPECT_EQ(messages(found("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = \"1 + 2\"\nposition = "
                            "\"sin(x)*ex\"\n[gravity]\nfield = \"x*ey - vel([x, 0, 0])\"\n")),
@@ -200,7 +200,7 @@ TEST(DimensionsOfAModel, GiveTheScalesOfUnknowns) {
   EXPECT_EQ(scales("2", "x'"), (Scales{0, 1, 0, 0}));
   EXPECT_EQ(scales("2", "th'"), (Scales{0, 1, 0, 1}));
   EXPECT_EQ(scales("2", "x"), (Scales{0, 1, 0, 2})) << "metres times seconds";
-  // Formulas that contradict one another give none, nor does one dimension alone.
+  // Formulas that contradict one another give no scales, nor does a single dimension.
   EXPECT_EQ(scales("x*y", "x'"), Scales{});
   EXPECT_EQ(
       test::model_of("coordinates = [\"x\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex\"}]\n")->scales,

@@ -1,4 +1,4 @@
-// What families cost: nodes in proportion to members, recursions of any depth.
+// The cost of families: nodes grow in proportion to the members, and recursions may have any depth.
 #include <gtest/gtest.h>
 
 #include "support/models.h"
@@ -17,7 +17,7 @@ TEST(Families, TheGraphOfAChainIsLinearInItsLinks) {
   EXPECT_LE(at400, 400U * 60) << "sixty nodes per link are plenty";
 }
 
-// Recursions of any length, asked for at their end, in either direction.
+// Long recursions that are used from their end, in either direction.
 TEST(Families, RecursionsAreAsDeepAsTheyLike) {
   const std::string head = "coordinates = [\"x\"]\nparticle = [{name = \"a\", mass = 1, position = \"P\"}]\nindex = {i "
                            "= \"1..1500\", j = \"0..1500\"}\n[point]\n";
@@ -26,7 +26,7 @@ TEST(Families, RecursionsAreAsDeepAsTheyLike) {
     const auto model = test::model_of(head + chain);
     EXPECT_EQ(number_value(model->bodies[0].center.y), 1500) << chain;
   }
-  // Of bodies whose centres lead to each other.
+  // Bodies whose centres refer to each other.
   const auto bodies = test::model_of("coordinates = [\"x\"]\nparticle = [{name = \"b[j]\", mass = 1, position = "
                                      "\"b[j+1].center + ey\"}, {name = \"b[1500]\", mass = 1, position = \"x*ex\"}]\n"
                                      "index = {j = \"0..1500\"}\n");

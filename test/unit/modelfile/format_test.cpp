@@ -1,4 +1,4 @@
-// anholon fmt: what a file says, its order and its comments stay, and doing it twice changes nothing.
+// `anholon fmt` keeps the content of a file, its order and its comments, and formatting twice changes nothing.
 #include <gtest/gtest.h>
 
 #include "modelfile/text/format.h"
@@ -65,7 +65,7 @@ TEST(Format, NothingIsMadeOfWhatIsNoToml) {
     EXPECT_THROW(format(text), Failure) << text;
 }
 
-// The check at run time: it must notice each of these.
+// The comparison at run time must notice each of these differences.
 TEST(Format, ContentIsComparedToTheLastCharacterAndInOrder) {
   const auto tree = [](const std::string& text) { return read_toml(SourceText{"test.toml", text}); };
   const std::string text = "a = 1\nb = [\"x\", true]\n[c]\nd = {e = \"f\"}\n";

@@ -1,4 +1,4 @@
-// The table of the language and the reader say the same. (Its page is tested by tools/reference.py.)
+// The table of the language and the reader agree. (tools/reference.py tests the page of the table.)
 #include <set>
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(Language, EveryFunctionIsReadAsItsExampleSays) {
     EXPECT_FALSE(r.call.empty());
     if (r.example.empty()) continue;
     EXPECT_EQ(first(diagnostics_of(kPlate + "[define]\na = \"" + r.example + "\"\n")), "") << r.call;
-    // Its name, with a slip, is recognized; without arguments every function is an error.
+    // The name with a slip is recognized; without arguments every function is an error.
     EXPECT_NE(first(diagnostics_of(kPlate + "[define]\na = \"" + r.name + "()\"\n")), "") << r.call;
     if (r.name.size() > 3) {
       EXPECT_NE(first(diagnostics_of(kPlate + "[define]\na = \"" + r.name + "q(x)\"\n"))
@@ -62,7 +62,7 @@ TEST(Language, EverySectionIsKnownAtTheTopOfAFileAndNothingElse) {
   }
 }
 
-// A section with fixed keys refuses others, with the keys of the table.
+// A section with fixed keys refuses others and names the keys of the table.
 TEST(Language, KeysOfEachSectionAreThoseOfTheTable) {
   for (const LanguageSection& s : language()) {
     using Form = LanguageSection::Form;

@@ -1,4 +1,4 @@
-// What the reader of model files says, where, and that it reports all errors at once.
+// The messages of the reader of model files and their places; all errors are reported at once.
 #include <gtest/gtest.h>
 
 #include "support/models.h"
@@ -102,7 +102,7 @@ TEST(Messages, ASyntaxErrorOfTomlHasItsPlace) {
   EXPECT_EQ(list[0].span.line, 2U);
 }
 
-// [view] belongs to pictures: whoever gives it is told that nothing is drawn.
+// An element of [view] that draws nothing is reported.
 TEST(View, IsReadAndItsElementsMustShowSomething) {
   const auto model = test::model_of(kGood + "[view]\npath = {trace = \"0*ex\"}\n");
   ASSERT_EQ(model->view.elements.size(), 1U);
@@ -141,7 +141,7 @@ TEST(Robust, AnInertiaOverAParameterThatIsZeroIsTheUsersError) {
               testing::ExitedWithCode(10), "");
 }
 
-// (x''^2 + x'')/x'' - x'' is 1: the constraint has order 1, and finding that out must not divide by zero.
+// (x''^2 + x'')/x'' - x'' is 1: the constraint has order 1, and the search for it must not divide by zero.
 TEST(Robust, AHighestDerivativeThatCancelsUnderAFraction) {
   const std::string text = test::replaced(kGood, "x' = 0", "(x''^2 + x'')/x'' - x'' + x' = 1");
   EXPECT_EXIT(read_and_leave(text), testing::ExitedWithCode(0), "");

@@ -38,7 +38,7 @@ name = "c"
 equation = "(x''' + )toml" + left + ") - (" +
                                     right + ") = 0\"\n");
   const Expr phi = model->constraints.at(0).phi - model->graph->jet(0, 3);
-  static std::vector<std::shared_ptr<const Model>> kept;  // the graph lives as long as the expression is looked at
+  static std::vector<std::shared_ptr<const Model>> kept;  // the graph lives as long as the expression is used
   kept.push_back(model);
   return phi;
 }

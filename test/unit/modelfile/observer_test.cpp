@@ -1,4 +1,4 @@
-// One motion of the observer, given in every accepted way, gives one spin and one acceleration of the origin.
+// One motion of the observer has one spin and one acceleration of the origin, in every accepted way of writing it.
 #include <gtest/gtest.h>
 
 #include "modelfile/mechanical/observer.h"
@@ -47,7 +47,7 @@ class ObserverTest : public testing::Test {
   }
 };
 
-// Turning about z by phi(t) = w t + sin t with the origin at (A cos 2t, t^2, 0) in inertial components.
+// The frame turns about z by phi(t) = w t + sin t, with the origin at (A cos 2t, t^2, 0) in inertial components.
 TEST_F(ObserverTest, InThePlane) {
   const std::string spin = "spin = \"(w + cos(t))*ez\"\n", rotation = "rotation = \"rotz(w*t + sin(t))\"\n";
   const std::string c = "cos(w*t + sin(t))", s = "sin(w*t + sin(t))";
@@ -63,7 +63,8 @@ TEST_F(ObserverTest, InThePlane) {
                      rotation + moving_velocity, spin + moving_velocity,
                      spin + "origin_acceleration = " + turned_back(ax, ay),
                      rotation + "origin_acceleration = " + turned_back(ax, ay)},
-                    // omega x v counted for a velocity in inertial components (theory: forces).
+                    // The mutant: omega x v is added although the velocity is given in inertial components (theory:
+                    // forces).
                     spin + "origin_velocity = [\"" + vx + "\", \"" + vy + "\", \"0\"]\n");
 }
 

@@ -1,7 +1,7 @@
-// Where constraints are redundant, those that take part are chosen anew on the way.
+// If constraints are redundant, the constraints that take part are chosen anew on the way.
 //
-// A coupler hangs on three parallel cranks, whose pivots lie on no line: six equations, of which five are independent. Any
-// five go bad somewhere along a turn of the cranks, though the mechanism has no singular position.
+// A coupler hangs on three parallel cranks whose pivots lie on no line: six equations, five of which are independent.
+// Any five become dependent somewhere along a turn of the cranks, though the mechanism has no singular position.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -99,7 +99,7 @@ TEST(ChosenRows, FollowTheMotionThroughEveryTurn) {
   }
 }
 
-// All six, with the least multipliers: the same whichever five take part.
+// All six multipliers are the least ones, for any five constraints that take part.
 TEST(ChosenRows, ChangeNoMultiplier) {
   const Result routh = run(kCranks, "routh", 4), kane = run(kCranks, "kane", 4);
   for (const char* name : {"ax", "ay", "bx", "by", "cx", "cy"}) {
@@ -119,7 +119,7 @@ TEST(ChosenRows, AreTheSameInARunThatGoesOn) {
   }
 }
 
-// The rows agree in the velocities, and the difference of the constraints says that z is 0.
+// The rows agree in the velocities, and the difference of the constraints is z = 0.
 TEST(ChosenRows, AreNotRedundantIfTheirDifferenceSaysMore) {
   Scenario s;
   ASSERT_TRUE(make_scenario(test::model_of(R"toml(

@@ -1,4 +1,4 @@
-// Compilations that nobody waits for any more do no harm.
+// Compilations whose motion has ended do no harm.
 #include <cstdlib>
 
 #include <gtest/gtest.h>
@@ -22,9 +22,9 @@ std::shared_ptr<const KernelPlan> plan_of(const std::string& name, int stages) {
                           {start.state.begin(), start.state.end()});
 }
 
-// As many as are begun within the last moments of a program that computes one motion after another.
+// Begins several compilations in the last moments of a program that computes one motion after another.
 void leave_some_behind(int milliseconds) {
-  setenv("ANHOLON_CACHE", "", 1);  // nothing is found made
+  setenv("ANHOLON_CACHE", "", 1);  // no code is found on disk
   const std::vector<std::shared_ptr<const KernelPlan>> plans = {
       plan_of("zoo/disc", 14), plan_of("zoo/chain", 15), plan_of("zoo/snakeboard", 16), plan_of("zoo/fourbar", 17)};
   std::vector<std::unique_ptr<CodeForLongRuns>> runs;
@@ -35,10 +35,10 @@ void leave_some_behind(int milliseconds) {
     for (int asked = 0; asked < 64; ++asked) runs[k]->step(plans[k], 1e-6, 1);
   runs.clear();
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));  // the next motion
-  std::exit(0);                                                          // on a fast machine some are done by now
+  std::exit(0);  // on a fast machine some compilations end before
 }
 
-// The compiler's statics are destroyed at exit, those that it makes as it goes first.
+// The compiler's static objects are destroyed at exit; those that it creates while it works are destroyed first.
 TEST(CodeForLongRuns, ExitWaitsForWhatIsLeftBehind) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   for (int milliseconds : {20, 60, 180})

@@ -1,4 +1,4 @@
-// Methods other than Taylor's: they give the same motion, and the automatic choice finds where they pay.
+// Methods other than Taylor's give the same motion, and the automatic choice takes them where they are cheaper.
 #include <algorithm>
 #include <numbers>
 
@@ -51,7 +51,7 @@ double difference(const Result& a, const Result& b) {
   return worst;
 }
 
-// A slider between a very stiff spring and a strong damper, and a pendulum that hangs on it.
+// A slider between a very stiff spring and a strong damper, with a hanging pendulum.
 const char* const kStiff = R"(
 coordinates = ["x", "th"]
 [[particle]]
@@ -72,7 +72,7 @@ vector = "(-1e8*x - 2e5*x')*ex"
 th = 1
 )";
 
-// A bead on a spring whose force is straight between knots, driven through many of them.
+// A bead on a spring whose force is piecewise linear, driven through many knots.
 const char* const kTable = R"(
 coordinates = ["x"]
 table = [{name = "pull", x = [-2, -1, -0.5, 0.25, 0.75, 1.5, 2], y = [9, 5, 1, 0, -2, -4, -9], outside = "linear"}]
@@ -90,7 +90,7 @@ x = 1.25
 
 class ByMethod : public testing::TestWithParam<std::string> {};
 
-// Orders of constraints 0 to 3, many links, varying masses, forms that eliminate.
+// The models have constraints of orders 0 to 3, many links, varying masses, and forms that eliminate.
 TEST_P(ByMethod, TheMotionIsTheSame) {
   const std::string text = test::shipped_text(GetParam());
   const Result expected = motion(text, 1, {Method::taylor, power_of_ten(13)});
@@ -101,7 +101,7 @@ TEST_P(ByMethod, TheMotionIsTheSame) {
     EXPECT_EQ(r->report.method.taylor_steps, 0U);
     EXPECT_EQ(r->report.steps, r->report.method.steps);
     EXPECT_GT(r->report.method.evaluations, r->report.steps);
-    // Rows are points on the constraints, solved for accelerations and multipliers.
+    // Rows are points on the constraints; accelerations and multipliers are solved for there.
     EXPECT_LT(r->report.newton, 1e-15);
     EXPECT_LT(r->report.constraints_kept, 1e-15);
     EXPECT_GT(difference(*r, expected), 0) << "the same bits are no other method";
@@ -145,14 +145,14 @@ TEST(Course, StiffMotionsGoByBdf) {
     EXPECT_EQ(m.turns[0].to, Method::bdf);
     EXPECT_NE(m.turns[0].why.find("stiff"), std::string::npos) << m.turns[0].why;
     EXPECT_NEAR(found.number(4, "th"), bdf.number(4, "th"), 1e-6);
-    // The same choice every time, at the same place.
+    // The choice is the same every time, at the same place.
     const Result again = motion(kStiff, 10, {Method::automatic, power_of_ten(8), most});
     EXPECT_EQ(again.rows.rows(), found.rows.rows());
     EXPECT_EQ(again.report.method.trial_evaluations, m.trial_evaluations);
   }
 }
 
-// Sharp rows stay Taylor's, whatever that takes; so do motions that are not stiff.
+// Rows of small tolerance, and motions that are not stiff, stay with Taylor's method at any cost.
 TEST(Course, NothingElseGoesByBdf) {
   const Result sharp = motion(kStiff, Rational(1, 5), {Method::automatic, power_of_ten(12)});
   EXPECT_TRUE(sharp.report.outcome.ok());
@@ -166,7 +166,8 @@ TEST(Course, NothingElseGoesByBdf) {
   EXPECT_EQ(disc.report.method.steps, 0U);
 }
 
-// At a tolerance that BDF does not serve, a long motion that is stiff says so, also where it cannot come to its end.
+// At a tolerance that BDF does not support, a long stiff motion is reported as stiff, also if it does not reach its
+// end.
 TEST(Course, StiffMotionsWithTightTolerancesAreTold) {
   const auto told = [](const Result& r) {
     return std::count_if(r.report.notes.begin(), r.report.notes.end(),
@@ -213,7 +214,7 @@ wear = {rate = "sqrt(1 + lambda.blade^2 + th''^2)", initial = 0}
 "th'" = 1
 )toml";
 
-// Accelerations and multipliers follow from linear equations here, and the rate follows from them.
+// Accelerations and multipliers follow from linear equations here, and the nonlinear rate follows from them.
 TEST(Course, RatesOfStatesMayBeNonlinear) {
   const Result taylor = motion(kWear, 5, {Method::taylor, power_of_ten(14)});
   ASSERT_TRUE(taylor.report.outcome.ok()) << taylor.report.outcome.message;
@@ -225,13 +226,13 @@ TEST(Course, RatesOfStatesMayBeNonlinear) {
   }
 }
 
-// Left to the error test alone, each kink costs a dozen refusals and as many short steps.
+// If the error test alone met the kinks, each would cost a dozen refusals and as many short steps.
 TEST(Course, StepsEndAtKinks) {
   const Result rk = motion(kTable, 20, {Method::runge_kutta, power_of_ten(8)});
   EXPECT_LT(rk.report.method.refused, rk.report.method.steps / 10);
 }
 
-// A particle among so many others that are held: much to evaluate, few unknowns.
+// A particle among many fixed attracting points: its evaluation is long, its unknowns are few.
 std::string among_many() {
   std::string x, y;
   for (int k = -6; k <= 6; ++k) {
@@ -254,7 +255,7 @@ TEST(Course, LooseTolerancesGoByRungeKutta) {
   EXPECT_EQ(found.report.method.turns[0].to, Method::runge_kutta);
   EXPECT_LT(found.report.method.taylor_steps, 100U);
   EXPECT_GT(taylor.report.method.taylor_steps, 200U);
-  // Over a time that it does not forget its start in.
+  // The end time is short enough that the motion still depends on its start.
   const Result exact = motion(text, 10, {Method::taylor, power_of_ten(12)});
   EXPECT_LT(difference(motion(text, 10, {Method::runge_kutta, power_of_ten(4)}), exact),
             10 * difference(motion(text, 10, {Method::taylor, power_of_ten(4)}), exact))
@@ -263,7 +264,8 @@ TEST(Course, LooseTolerancesGoByRungeKutta) {
   EXPECT_EQ(sharp.report.method.steps, 0U);
 }
 
-// x = -cos t; x y' = 0 loses its hold at x = 0, where no multiplier has a pole and the pivot, a square, keeps its sign.
+// x = -cos t; x y' = 0 does not determine y' at x = 0, where no multiplier has a pole and the pivot, a square, keeps
+// its sign.
 TEST(Course, SingularPointsAreNotPassed) {
   const auto hold = [](const std::string& factor) {
     return "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + "
@@ -285,7 +287,7 @@ TEST(Course, SingularPointsAreNotPassed) {
     }
 }
 
-// Where another method cannot go, Taylor does, and stops where it always stopped.
+// Where another method cannot continue, Taylor's method does, and stops at the same time as alone.
 TEST(Course, TheEndsOfAMotionAreTaylors) {
   const std::string table = test::replaced(kTable, "outside = \"linear\"", "outside = \"error\"");
   const std::string mass = "coordinates = [\"x\"]\n[functions]\nm = \"1 - t/3\"\n[[particle]]\nname = \"p\"\nmass = "
@@ -305,8 +307,8 @@ TEST(Course, TheEndsOfAMotionAreTaylors) {
   }
 }
 
-// x = -cos t, and x y' = 0 loses its hold at x = 0. A stop is met by a step that ends before it, or that cannot be
-// made.
+// x = -cos t, and x y' = 0 does not determine y' at x = 0. The motion stops at a step that ends before this point, or
+// at one that cannot be made.
 TEST(Course, TheLastRowOfAStopIsOfItsTime) {
   const std::string text = R"(coordinates = ["x", "y"]
 particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
@@ -336,7 +338,7 @@ TEST(Course, ShippedModelsStayTaylors) {
   }
 }
 
-// A stretch of steps takes the same course as its steps one by one: trials of other methods begin after the same steps.
+// A stretch of steps has the course of its steps one by one: trials of other methods begin after the same steps.
 TEST(Course, AStretchTakesTheCourseOfItsSteps) {
   struct Run {
     MethodReport report;

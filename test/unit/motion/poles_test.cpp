@@ -1,5 +1,5 @@
-// Motions that pass poles of their constraints: y' = x' tan(th) is x' = 0 at a right angle, where y' is finite. The
-// expected angles are those of equations in the speed along the blade, integrated by another program to 12 digits.
+// Motions that pass poles of their constraints: y' = x' tan(th) means x' = 0 at a right angle, where y' is finite. The
+// expected angles come from another program, which integrates equations in the speed along the blade to 12 digits.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -39,7 +39,8 @@ th = 0.3
 )toml";
 }
 
-// A force of the same work along the blade that has poles, too: near them series of its formula do not reach far.
+// A force with poles that does the same work along the blade: near the poles the series of its formula do not reach
+// far.
 const char* const kForceWithPoles = R"toml(
 coordinates = ["x", "y", "th"]
 force = [{generalized = {x = "-2*sin(th) - 0.5*x' + (2*cos(th) - 0.5*x'*sin(th)/cos(th))*sin(th)/cos(th)", th = 0.8}}]
@@ -54,7 +55,7 @@ class Results final : public CaseSink {
   std::vector<CaseResult> list;
 };
 
-// A sweep over these initial values of th'.
+// A sweep over the given initial values of th'.
 std::vector<CaseResult> sweep(const std::string& text, const std::vector<Rational>& speeds, const Rational& to) {
   Scenario scenario;
   EXPECT_TRUE(make_scenario(test::model_of(text), *find_formulation("routh"), {}, scenario).ok());
@@ -81,9 +82,9 @@ TEST(Poles, AreClearedByWhatTheyDivideBy) {
   EXPECT_EQ(cleared(s.v - s.du * tan(s.u)), s.v * cos(s.u) - s.du * sin(s.u));
   EXPECT_EQ(cleared(s.v - s.du / tan(s.u)), s.v * sin(s.u) - s.du * cos(s.u));
   EXPECT_EQ(cleared(s.v - s.du / (s.u - s.t)), s.v * (s.u - s.t) - s.du);
-  // The highest power of what several terms are divided by.
+  // The constraint is multiplied by the highest power of the common divisor of its terms.
   EXPECT_EQ(cleared(s.v / s.u - s.du / pow(s.u, 3)), s.v * pow(s.u, 2) - s.du);
-  // Within a sum that is a factor.
+  // In a sum the divisor becomes a factor.
   EXPECT_EQ(cleared(s.v - s.du * (1 + tan(s.u))), s.v * cos(s.u) - s.du * (sin(s.u) + cos(s.u)));
 }
 
@@ -106,7 +107,7 @@ TEST(Poles, ASweepPassesThem) {
   }
 }
 
-// Three velocities, and a pole of a rational function: the motion that divides by nothing is another writing of it.
+// Three velocities, and a pole of a rational function: the constraint without division has the same motion.
 TEST(Poles, AreThoseOfTheWritingAlone) {
   const std::vector<Rational> speeds{Rational(45, 100), Rational(7, 10), Rational(108, 100)};
   for (const auto& [with, without] : {std::pair{"y' = (x' + 0.3*th')/(th - 1)", "(th - 1)*y' = x' + 0.3*th'"},
@@ -121,8 +122,8 @@ TEST(Poles, AreThoseOfTheWritingAlone) {
   }
 }
 
-// Equations with a varying mass have no writing in quasi-velocities, and those with a pole lose their digits at it: the
-// motion ends there, or what is left of it is right.
+// Equations with a varying mass have no writing in quasi-velocities, and equations with a pole lose their digits at it:
+// the motion ends there, or its remainder is right.
 TEST(Poles, NoMotionGoesOnWithoutDigits) {
   std::vector<Rational> speeds;
   for (int k = 0; k < 8; ++k) speeds.push_back(Rational(45 + 9 * k, 100));
@@ -164,7 +165,8 @@ TEST(EndCheck, AShortStepThatEndsWithAnotherRateIsLookedAt) {
 
 // ---- quasi-velocities that change their sign ------------------------------------------------------------------------
 
-// p times the sign of cos(th), which the series of a step do not show: they go on with the sign that they began with.
+// Multiplies p by the sign of cos(th). The series of a step do not show the change of sign and continue with the sign
+// at their start.
 void turn_with_cosine(QuasiVelocities& q) {
   Graph& g = *q.system.model->graph;
   const Expr c = cos(g.jet(2, 0)), sign = c / sqrt(pow(c, 2));

@@ -1,6 +1,5 @@
-// Velocities in which the kinetic energy is a sum of squares: which are found, and that they are what they are said to
-// be. That motions in them are the motions of Routh's equations is in representation_test.cpp and in all tests of
-// motions.
+// Velocities in which the kinetic energy is a sum of squares: which are found, and that they have this property.
+// representation_test.cpp and all tests of motions show that motions in them are the motions of Routh's equations.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -26,7 +25,7 @@ struct Found {
     const System& s = scenario->system;
     if (s.constraints.empty()) return;
     parameters = parameter_values<long double>(*scenario->model);
-    // A fixed point is as good as any: the choice of pivots alone depends on it.
+    // Any fixed point is suitable, since only the choice of pivots depends on it.
     const auto symbol = [&](const Node& n) {
       if (n.kind == Kind::time) return static_cast<double>(start.t);
       if (n.kind == Kind::parameter) return static_cast<double>(parameters[n.index]);
@@ -41,7 +40,7 @@ struct Found {
   Start<long double> start;
   std::vector<long double> parameters;
   std::optional<QuasiVelocities> q;
-  std::string why;  // there are none
+  std::string why;  // the reason why there are none
 };
 
 using Texts = std::vector<std::string>;
@@ -51,7 +50,7 @@ TEST(QuasiVelocities, AreThoseOfTheBooks) {
   ASSERT_TRUE(disc.q);
   EXPECT_EQ(disc.of_state(), (Texts{"theta'", "psi'*cos(theta) + phi'", "psi'*sin(theta)"}));
   EXPECT_EQ(print(disc.q->determinant, disc.q->system.model->names, Format::text), "R^2*m*sin(theta)^2/4");
-  // No tangent, no root: the speed along the blade.
+  // No tangent and no root occur: the first velocity is the speed along the blade.
   const Found sleigh(test::shipped("zoo/chaplygin-sleigh"));
   ASSERT_TRUE(sleigh.q);
   EXPECT_EQ(sleigh.of_state(), (Texts{"y'*sin(th) + x'*cos(th)", "th'"}));
@@ -60,7 +59,7 @@ TEST(QuasiVelocities, AreThoseOfTheBooks) {
   EXPECT_TRUE(is_number(sleigh.q->determinant)) << "never singular";
 }
 
-// A blade with a given slip, alone and joined to another body: the speed along the blade again, and no poles.
+// A blade with a given slip, alone and joined to another body: again the speed along the blade, and no poles.
 TEST(QuasiVelocities, HaveNoPolesWhereAConstraintHasAPartWithoutVelocities) {
   const std::string sleigh = R"toml(coordinates = ["x", "y", "th", "be"]
 parameters = {m = 2, J = 0.4, w = 0.1}
@@ -115,14 +114,15 @@ ExpansionWork work_in_quasi_velocities(const std::string& model, const Overrides
   return {};
 }
 
-// Not more than the same systems reduced by hand (bench/peers/reduced_systems.h), sine and cosine together a product.
+// The count of products is at most that of the same systems reduced by hand (bench/peers/reduced_systems.h); sine and
+// cosine together count as one product.
 TEST(QuasiVelocities, AreAsShortAsByHand) {
   EXPECT_EQ(work_in_quasi_velocities("zoo/chaplygin-sleigh").products, 5U);
   EXPECT_EQ(work_in_quasi_velocities("zoo/disc").products, 12U);
   EXPECT_LE(work_in_quasi_velocities("zoo/snakeboard").products, 14U);
 }
 
-// What one more trailer adds, wherever it is.
+// The products that one more trailer adds do not depend on the number of trailers.
 TEST(QuasiVelocities, GrowWithTheTrailers) {
   std::size_t products[3], i = 0;
   for (const char* n : {"4", "5", "10"})
@@ -138,7 +138,7 @@ std::vector<std::string> with_quasi_velocities() {
   return names;
 }
 
-// In any state: T(p) is 1/2 sum I p^2, constraints hold, and there and back is where it was.
+// In any state T(p) is 1/2 sum I p^2, the constraints hold, and the map to p and back is the identity.
 TEST(QuasiVelocities, MakeTheEnergyASumOfSquares) {
   std::mt19937 random(7);
   const auto number = [&] { return static_cast<long double>(random() >> 8) / 0x1p23L - 1; };
@@ -161,7 +161,7 @@ TEST(QuasiVelocities, MakeTheEnergyASumOfSquares) {
     for (int sample = 0; sample < 3; ++sample) {
       std::vector<long double> own(map.own_size()), state, back;
       for (long double& x : own) x = number();
-      // Near the start, where formulas have values.
+      // The state is near the start, where formulas have values.
       for (std::size_t a = 0; a < n; ++a) own[a] = f.start.state[2 * a] + 0.05L * own[a];
       const auto energy = [&](const std::vector<std::pair<std::size_t, long double>>& p) {
         std::vector<long double> at = own;
@@ -203,7 +203,8 @@ std::string constraint(const std::string& equation) {
          "\"\n[initial]\nx = 1\ny = 0.5\nz = 0.25\n\"y'\" = 0.5\n";
 }
 
-// Rheonomic and affine constraints, an observer that turns, states and forces on velocities; and what is none of ours.
+// Rheonomic and affine constraints, a turning observer, states and forces on velocities have quasi-velocities;
+// holonomic, nonlinear and higher constraints have none.
 TEST(QuasiVelocities, OfOtherConstraints) {
   const auto distance = [](const std::string& text) {
     const auto run = [&](Precision precision) {
@@ -239,8 +240,8 @@ TEST(QuasiVelocities, OfOtherConstraints) {
     EXPECT_FALSE(Found(test::model_of(text)).q) << text;
 }
 
-// The quasi-velocities of the sweep's start divide by c; where that is zero the kernel has no value, and the reference
-// goes on from the state that was.
+// The quasi-velocities of the sweep's start divide by c. For c = 0 the kernel has no value, and the reference continues
+// from the state before.
 TEST(QuasiVelocities, WithoutAValueNothingIsLost) {
   const std::string text =
       particle(constraint("c*z' - (1 + y^2)*x' - (2 + z^2)*y' = 0")) + "\"x'\" = 0.5\n[parameters]\nc = 1\n";
@@ -258,7 +259,7 @@ TEST(QuasiVelocities, WithoutAValueNothingIsLost) {
        representations({derived, s.structure, {}, one, 0, state, s.mechanics.get()}, WritingEffort::at_once))
     if (r.writing == Writing::quasi) plan = r.plan;
   ASSERT_TRUE(plan);
-  // With c = 0: x' = 0.5 and y' that fits it.
+  // With c = 0: x' = 0.5 and the y' that satisfies the constraint.
   const std::vector<long double> zero(one.size(), 0);
   std::vector<long double> at = start.state;
   at[5] = 0;

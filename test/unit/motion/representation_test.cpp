@@ -60,8 +60,8 @@ TEST(Representation, WhereSolutionsAreRefinedEquationsStay) {
 
 std::string links(int n) { return std::to_string(n); }
 
-// Four products a link of a chain: its sine, its cosine, and those with the forces at its end. Ten for the equations as
-// derived.
+// Three products per link of a chain: its sine and cosine in one step, and the products of both with the forces at its
+// end. The derived equations have ten.
 TEST(Representation, TotalDerivativesAreLeftToTheSeries) {
   std::size_t before = 0;
   for (const int n : {4, 8, 12}) {
@@ -80,7 +80,7 @@ TEST(Representation, TotalDerivativesAreLeftToTheSeries) {
   }
 }
 
-// Largest difference of two expansions from a state beside the start, in relation to the coefficients of the same
+// The largest difference of two expansions from a state beside the start, in units of the coefficients of the same
 // order.
 double apart(const Written& w, const std::shared_ptr<const KernelPlan>& a, const std::shared_ptr<const KernelPlan>& b,
              const std::vector<long double>& parameters) {
@@ -116,7 +116,8 @@ double apart(const Written& w, const std::shared_ptr<const KernelPlan>& a, const
   return worst;
 }
 
-// On every shipped model that has it, beside its start.
+// Compares every shipped model that has this writing with its derived equations, beside its start. Returns the number
+// of these models.
 std::size_t compare_with_derived(Writing writing) {
   std::size_t models = 0;
   for (const std::string& name : test::moving_models()) {
@@ -141,7 +142,7 @@ std::size_t compare_with_derived(Writing writing) {
 TEST(Representation, RatesAreTheSameEquations) { EXPECT_GE(compare_with_derived(Writing::rates), 20U); }
 TEST(Representation, QuasiVelocitiesAreTheSameEquations) { EXPECT_GE(compare_with_derived(Writing::quasi), 10U); }
 
-// The interpreter reads such programs as well.
+// The interpreter reads programs of this writing as well.
 TEST(Representation, RatesByTheReference) {
   for (const char* name : {"zoo/chain", "zoo/trailers", "zoo/disc"}) {
     const Written w(name);
@@ -160,7 +161,7 @@ TEST(Representation, RatesByTheReference) {
   }
 }
 
-// A bead on a curve, an arm and a skate that inputs move.
+// A bead on a curve, an arm and a skate, moved by inputs.
 TEST(Representation, InputsInPositions) {
   const std::string carried = "input.u = 't^2'\n",
                     with_a_state = "state.z = {rate = '-z', initial = 1}\ninput.u = 'z*t'\n";
@@ -214,7 +215,8 @@ TEST(FormChoice, CountsBothForms) {
   EXPECT_STREQ(c.costs[0].form->name, "routh");
   EXPECT_GT(c.costs[0].total, 0);
   EXPECT_GT(c.costs[1].total, 0);
-  // Maggi's divide by pivots, so they are not written out on the way, and do not pay.
+  // Maggi's equations divide by pivots, so total derivatives are not left to the series, and the form is chosen only if
+  // it is cheaper by a quarter.
   EXPECT_STREQ(c.form->name, c.costs[0].total >= 1.25 * c.costs[1].total ? "maggi" : "routh");
 }
 

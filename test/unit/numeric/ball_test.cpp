@@ -31,7 +31,7 @@ TEST(Ball, HoldsTheFunctionsOfElementaryDefAndTheRoot) {
   EXPECT_TRUE(functions().contains(#name) || std::string(#name) == "sign") << #name;
 #include "expr/elementary.def"
 #undef ROW
-  EXPECT_EQ(rows, functions().size());  // sqrt for sign
+  EXPECT_EQ(rows, functions().size());  // functions() holds sqrt in place of sign
 }
 
 TEST(Ball, AgreesWithTheMathematicalLibrary) {
@@ -45,7 +45,7 @@ TEST(Ball, AgreesWithTheMathematicalLibrary) {
     }
 }
 
-// What lies in the argument has its value in the result, and the result is not much larger.
+// The ball of the result holds the value at each number of the argument, and is not much larger.
 TEST(Ball, EnclosesTheValuesOfAllItsNumbers) {
   for (const auto& [name, pair] : functions()) {
     const Rational center = name == "acosh" ? Rational(3, 2) : Rational(1, 2), radius(1, 8);
@@ -99,7 +99,7 @@ TEST(Ball, ArcOfTwoArguments) {
   for (int y : {-2, 0, 1})
     for (int x : {-3, 1, 2}) EXPECT_NEAR(middle(atan2(Ball(y), Ball(x))), std::atan2(y, x), 1e-15);
   EXPECT_FALSE(atan2(Ball(0), Ball(0)).is_finite());
-  // Across the cut both ends are in.
+  // A ball across the cut gives both ends.
   const Ball cut = atan2(Ball(Rational(0), Rational(1, 100)), Ball(-1));
   EXPECT_TRUE(cut.contains(Rational(3)) && cut.contains(Rational(-3)));
 }
@@ -162,7 +162,7 @@ TEST(Ball, HasAHullAndALowerEnd) {
   EXPECT_TRUE(h.contains(Rational(3, 2)) && h.contains(Rational(-13, 4)) && !h.contains(Rational(2)) &&
               !h.contains(Rational(-4)));
   EXPECT_FALSE(hull(Ball(1), Ball::unknown()).is_finite() || lower_end(Ball::unknown()).is_finite());
-  // The largest of 1 and a wide ball is written as one that reaches below 1: its lower end stays beside it.
+  // The lower end of 5 ± 4 is a point beside 1.
   const Ball end = lower_end(Ball(Rational(5), Rational(4)));
   EXPECT_TRUE(end.is_positive() && Ball(Rational(1), Rational(1, 1000)).contains_inside(end));
   EXPECT_EQ(end.radius(), Rational(0));

@@ -49,7 +49,7 @@ TEST(Eigenvalues, VectorsBelongToThem) {
   }
 }
 
-// Rounding moves a fourfold eigenvalue by a fourth root; the mean stays.
+// Rounding moves a fourfold eigenvalue by a fourth root; the mean of the cluster stays.
 TEST(Eigenvalues, JordanBlockIsOneEigenvalue) {
   const PrecisionScope scope(kDigits);
   std::vector<Eigenvalue> e;
@@ -64,7 +64,7 @@ TEST(Eigenvalues, JordanBlockIsOneEigenvalue) {
   EXPECT_EQ(e[4].multiplicity, 1);
 }
 
-// The same block hidden by a change of basis, whose entries are not small numbers.
+// The same kind of block in another basis, so that its entries are not small numbers.
 TEST(Eigenvalues, HiddenJordanBlock) {
   const PrecisionScope scope(kDigits);
   // S (3 + N) S^-1 with S = [1 2; 3 7].

@@ -98,7 +98,7 @@ TEST(Enclosure, WhatIsNotDefinedIsNotProved) {
   EXPECT_FALSE(prove_root(f, {Ball(Rational(1), Rational(2))}));
 }
 
-// The mutant: a Jacobian that does not belong to the system must not prove what is not there.
+// The mutant: the Jacobian of another system must not prove a root that does not exist.
 TEST(Enclosure, ARootNeedsItsOwnEquation) {
   SquareSystem f = polynomial({1, -2, 1});
   f.value = [](const Box& x) { return std::vector<Ball>{x[0] * x[0] + Ball(1)}; };

@@ -47,7 +47,7 @@ template <class N>
 class LuOf : public testing::Test {
  protected:
   PrecisionScope precision{40};
-  // Backward stability: the residual of a random system of this size is a few hundred round-offs at most.
+  // Backward stability: the residual of a random system of this size is at most a few hundred round-offs.
   static constexpr double kResidualRoundoffs = 500;
 };
 using Numbers = testing::Types<double, long double, Quad, Multi>;
@@ -73,7 +73,7 @@ TYPED_TEST(LuOf, SolvesRandomSystemsAndTheirTransposes) {
 
 TYPED_TEST(LuOf, RowsOfDifferentUnitsDoNotMatter) {
   using N = TypeParam;
-  // Row i in units of 10^(+-12): the solution stays what it was.
+  // The rows have units of 10^(+-12), which leave the solution unchanged.
   const std::size_t n = 8;
   Matrix<N> a = random_matrix<N>(n, n, 5);
   const std::vector<N> x0 = random_matrix<N>(n, 1, 6).data;
@@ -101,7 +101,7 @@ TYPED_TEST(LuOf, RefusesSingularAndNotNumbers) {
 }
 
 TEST(Lu, RefinementGainsOnAnIllConditionedSystem) {
-  // Wilkinson's growth matrix: elimination loses digits that one step of refinement brings back.
+  // Wilkinson's growth matrix: elimination loses digits, and one step of refinement restores them.
   const std::size_t n = 40;
   Matrix<double> a(n, n);
   for (std::size_t i = 0; i < n; ++i)
@@ -117,7 +117,7 @@ TEST(Lu, RefinementGainsOnAnIllConditionedSystem) {
 }
 
 TEST(SmallestSingularValue, IsKnownForTriangularAndSymmetricMatrices) {
-  const double tolerance = 1e-3;  // an estimate by inverse iteration: three digits are plenty
+  const double tolerance = 1e-3;  // an estimate by inverse iteration has three digits
   Lu<double> lu;
   std::vector<double> direction;
   Matrix<double> a(3, 3);
@@ -146,7 +146,7 @@ TEST(SmallestSingularValue, DoesNotDependOnTheUnitsOfTheRows) {
 }
 
 TEST(SmallestSingularValue, SeesANearlySingularMatrixWhateverItsKernel) {
-  // [1 1-e; 1-e 1] has the singular values e and 2 - e; its kernel is nearly (1, -1), at right angles to (1, 1).
+  // [1 1-e; 1-e 1] has the singular values e and 2 - e; its kernel is nearly (1, -1), orthogonal to (1, 1).
   for (double e : {0.5, 1e-2, 1e-4, 1e-6, 1e-9}) {
     Matrix<double> a(2, 2);
     a(0, 0) = a(1, 1) = 1, a(0, 1) = a(1, 0) = 1 - e;
@@ -168,7 +168,7 @@ TEST(ChooseRows, FindsTheRankOfRandomProducts) {
     EXPECT_EQ(choice.dependent.size(), rows - rank) << seed;
     EXPECT_TRUE(choice.vanishing.empty());
     EXPECT_TRUE(std::is_sorted(choice.independent.begin(), choice.independent.end()));
-    // The chosen rows alone have full rank, the others none left: with any of them the rank stays.
+    // The chosen rows have full rank; any other row leaves the rank unchanged.
     Matrix<double> chosen(rank + 1, cols);
     for (std::size_t extra : choice.dependent) {
       for (std::size_t j = 0; j < cols; ++j) {
@@ -213,7 +213,7 @@ TEST(LeastChange, IsTheSmallestInTheMetric) {
     std::vector<Multi> mu;
     of_g.solve(b, mu);
     EXPECT_LE(largest_gap(times(w, mu), x), tolerance);
-    // The mutant: the least change in the Euclidean norm is another one.
+    // The mutant: the least change in the Euclidean norm is different.
     Matrix<Multi> one(n, n);
     for (std::size_t i = 0; i < n; ++i) one(i, i) = Multi(1);
     std::vector<Multi> euclidean;

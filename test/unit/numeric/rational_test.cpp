@@ -12,7 +12,7 @@
 namespace anholon::rational_test {
 namespace {
 
-// Integers about the places where a number begins to take memory of its own, and where `long` ends.
+// Integers near the sizes at which a number needs memory of its own, and at which `long` ends.
 std::vector<mpz_class> remarkable_integers() {
   std::vector<mpz_class> list{0, 1, 2, 3, 12, 997};
   for (unsigned bits : {31U, 32U, 61U, 62U, 63U, 64U, 130U})
@@ -34,7 +34,7 @@ std::vector<mpq_class> remarkable_fractions() {
   return list;
 }
 
-// What is wrong with the arithmetic of a and b, by GMP's; empty if nothing is.
+// Compares the arithmetic of a and b with that of GMP. Returns the name of the first difference, or an empty text.
 std::string fault(const mpq_class& a, const mpq_class& b) {
   const Rational x = Rational::from(a), y = Rational::from(b);
   const auto differs = [](const Rational& r, const mpq_class& exact) { return r.get_mpq() != exact; };
@@ -161,7 +161,7 @@ TEST(FromRational, IsCorrectlyRounded) {
   const Rational large = *exact_power(Rational(10), 300) / 7, small = 1 / large;
   EXPECT_TRUE(is_nearest(from_rational<double>(large), large));
   EXPECT_TRUE(is_nearest(from_rational<double>(small), small));
-  // Half way between two doubles, and just above it: only one rounding may happen on the way.
+  // A number half way between two doubles, and one just above it: there may be only one rounding.
   const Rational ulp = 1 / *exact_power(Rational(2), 52), tie = 1 + ulp / 2, above = tie + ulp / 1000000;
   EXPECT_EQ(from_rational<double>(tie), 1.0);
   EXPECT_EQ(from_rational<double>(above), 1.0 + 0x1p-52);

@@ -48,12 +48,12 @@ TEST(Defect, OfATruncatedCosineIsItsFirstTermLeftOut) {
   EXPECT_GE(number(all.newton), 1.0 / 384);
   EXPECT_LE(number(all.newton), 1.01 / 384);
   EXPECT_EQ(all.constraints, "0");
-  // At one time, the middle: t = 1/4.
+  // One time only, the middle: t = 1/4.
   const RigorousReport one = defect(*s, cosine, 1);
   EXPECT_EQ(one.times, 1U);
   EXPECT_GE(number(one.newton), 1.0 / 6144);
   EXPECT_LE(number(one.newton), 1.01 / 6144);
-  // Backwards, and in two steps: the same motion.
+  // Backwards, and in two steps, the motion is the same.
   const std::vector<DenseStep> halves = {
       step(0, Rational(1, 4), {{1, 0, Rational(-1, 2), 0, Rational(1, 24)}}),
       step(Rational(1, 4), Rational(1, 2),
@@ -68,8 +68,8 @@ TEST(Defect, OfATruncatedCosineIsItsFirstTermLeftOut) {
   EXPECT_LE(number(backwards.newton), 1.01 / 384);
 }
 
-// x = 0 under the force 1 - cos(40 t): at the middle of the step the residual vanishes to second order, between it is
-// as large as the force. Without the remainder nothing would be seen.
+// x = 0 under the force 1 - cos(40 t): at the middle of the step the residual vanishes to second order, elsewhere it is
+// as large as the force. Only the remainder shows it.
 TEST(Defect, IsNotOnlyThatOfTheMiddle) {
   const auto s = scenario(test::model_of(test::replaced(kOscillator, "-x*ex", "(1 - cos(40*t))*ex")));
   const RigorousReport r = defect(*s, {step(Rational(-1, 4), Rational(1, 4), {{0, 0}})}, 0);
@@ -97,8 +97,8 @@ TEST(Defect, SeesWhereStepsDoNotJoin) {
   EXPECT_LE(number(r.joints), 1.01e-6);
 }
 
-// A bead on x^2 + y^2 = 1 that flies along x = t, y = 1: phi = t^2, phi' = 2 t, phi'' = 2, the latter against its two
-// terms of 2 and 0.
+// A bead on x^2 + y^2 = 1 that moves along x = t, y = 1: phi = t^2, phi' = 2 t, phi'' = 2, which is compared with its
+// two terms 2 and 0.
 TEST(Defect, SeesHiddenConstraints) {
   const auto s = scenario(test::model_of(
       "coordinates = [\"x\", \"y\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = [\"x\", \"y\", \"0\"]\n"
@@ -116,13 +116,12 @@ TEST(Defect, IsBoundedByValuesWhereAForceHasAKink) {
   const RigorousReport all = defect(*s, through, 0);
   EXPECT_GE(number(all.newton), 1.0 / 3);
   EXPECT_LE(number(all.newton), 0.4);
-  // A logarithm has no value beyond zero.
+  // A logarithm has no value below zero.
   const auto bad = scenario(test::model_of(test::replaced(kOscillator, "-x*ex", "-log(x)*ex")));
   EXPECT_EQ(defect(*bad, through, 0).newton, "inf");
 }
 
-// What is bounded is the motion: the bound for all times holds at each of many, and is not much larger than the largest
-// of these.
+// The bound for all times holds at each of many times, and is not much larger than the largest of their residuals.
 class DefectOfAMotion : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 TEST_P(DefectOfAMotion, ForAllTimesHoldsAtMany) {
   const auto s = scenario(test::shipped(GetParam().first), GetParam().second);
@@ -173,7 +172,7 @@ TEST(Defect, FallsWithTheToleranceInEveryNumberType) {
   EXPECT_LT(newton(Precision::multi, "1e-42", 40), 1e-38);
 }
 
-// Near a pole of the multiplier its polynomial is poor; what moves is not.
+// Near a pole of the multiplier the polynomial of the multiplier is poor, those of the coordinates are not.
 TEST(Defect, WithoutMultipliersIsThatOfTheMotionAlone) {
   const auto s = scenario(test::shipped("zoo/appell-hamel"));
   SimulationOptions o;
@@ -187,7 +186,7 @@ TEST(Defect, WithoutMultipliersIsThatOfTheMotionAlone) {
   }
 }
 
-// Mutants: one coefficient changed by 1e-9, and a force with the wrong sign, must be seen.
+// Mutants: one coefficient changed by 1e-9, and a force with the wrong sign, must be noticed.
 TEST(Defect, OfADisturbedTrajectoryOrAWrongLawIsSeen) {
   auto s = scenario(test::shipped("zoo/chaplygin-sleigh"));
   const Program p = program(s->system, s->structure);
@@ -203,7 +202,7 @@ TEST(Defect, OfADisturbedTrajectoryOrAWrongLawIsSeen) {
   for (const std::size_t times : {0U, 16U}) {
     EXPECT_LT(number(defect(*s, {good}, times).newton), 1e-11);
     EXPECT_LT(number(defect(*s, {good}, times).constraints), 1e-11);
-    // x'', y'', the angle, its acceleration, the multiplier. The place of the sleigh enters nothing.
+    // x'', y'', the angle, its acceleration, the multiplier. The position of the sleigh occurs in no equation.
     for (const auto& [unknown, k] : {std::pair<std::size_t, std::size_t>(0, 2), {1, 2}, {2, 0}, {2, 2}, {3, 0}}) {
       DenseStep bad = good;
       bad.coefficients[unknown][k] += Ball(Rational(1, 1000000000));

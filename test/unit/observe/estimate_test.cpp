@@ -1,5 +1,5 @@
-// The digits to trust: how the estimate is made, and that each kind of columns has its own. Many motions against 30
-// digits: test/estimate.
+// The digits to trust: how the estimate is made, and that each kind of columns has its own. test/estimate compares many
+// motions with 30 digits.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace anholon::estimate_test {
 namespace {
 
 struct Result : test::Motion {
-  // Of a kind; not a number where there is none.
+  // The error of a kind of columns, or not a number if there is none.
   double error(ColumnKind kind) const {
     if (report.error)
       for (const KindError& e : report.error->kinds)
@@ -56,8 +56,8 @@ x = "1 - e"
 "y'" = "sqrt((1 + e)/(1 - e))"
 )toml";
 
-// Against the reference trajectories: no estimate is smaller than a tenth of the true error, nor larger than a thousand
-// times it (or the round-off of what is printed).
+// Compared with the reference trajectories, no estimate is smaller than a tenth of the true error, nor larger than a
+// thousand times it (or the round-off of printing).
 class Estimate : public testing::TestWithParam<test::OraclePair> {};
 
 TEST_P(Estimate, OfTheErrorIsHonest) {
@@ -110,8 +110,8 @@ TEST(DigitsToTrust, StatesHaveTheirOwn) {
   EXPECT_TRUE(std::isnan(r.error(ColumnKind::reaction))) << "nothing constrains the motion";
 }
 
-// After seven periods the place at the shortest distance is known to 8e-10 (from a run with 30 digits); of 16
-// equidistant times none is near one.
+// After seven periods the position at the shortest distance is known to 8e-10 (from a run with 30 digits); none of 16
+// equidistant times is near a shortest distance.
 TEST(DigitsToTrust, OfAKeplerEllipseCountWhereItIsFastest) {
   const Result r = until(kKepler, 46);
   EXPECT_GT(r.error(ColumnKind::coordinate), 1e-9);
@@ -132,7 +132,7 @@ TEST(DigitsToTrust, OfASmallMotionAreThoseOfItsSize) {
   EXPECT_GT(oscillator("1e-7"), 1e4 * oscillator("1"));
 }
 
-// The upright pendulum stands, but for the last digit of pi: both runs round it alike, and fall alike.
+// The upright pendulum is at rest but for the last digit of pi: both runs round pi alike, and fall alike.
 TEST(DigitsToTrust, OfAnEquilibriumThatIsLostAreThoseOfItsStart) {
   const std::string pendulum =
       "coordinates = [\"th\"]\n[[particle]]\nname = \"P\"\nmass = 1\nposition = [\"sin(th)\", \"-cos(th)\", "
@@ -153,7 +153,7 @@ TEST(DigitsToTrust, AColumnThatIsZeroButForRoundOffTakesNone) {
   EXPECT_LT(r.error(ColumnKind::reaction), 1e-11);
 }
 
-// The jump of a velocity lies at the same place in both runs, or on either side of a row.
+// A velocity jumps at the same place in both runs, or on either side of a row.
 TEST(DigitsToTrust, RowsAtEventsAreComparedOnTheirSide) {
   const Result r = until(kPoint + "[gravity]\nfield = \"-9.81*ex\"\n[initial]\nx = 1\n\"x'\" = 0.3\n[[event]]\nname = "
                                   "\"floor\"\nwhen = \"x\"\ndirection = \"down\"\nset = {\"x'\" = \"-0.8*x'\"}\n",
@@ -163,7 +163,7 @@ TEST(DigitsToTrust, RowsAtEventsAreComparedOnTheirSide) {
   EXPECT_LT(r.error(ColumnKind::event_time), 1e-14);
 }
 
-// A run that goes on does not know of the events before.
+// A continued run has no record of the events before.
 TEST(DigitsToTrust, OfARunThatGoesOnAfterEvents) {
   const std::string ball = kPoint + "[gravity]\nfield = \"-9.81*ex\"\n[initial]\nx = 1\n\"x'\" = 0.3\n[[event]]\nname "
                                     "= \"floor\"\nwhen = \"x\"\ndirection = \"down\"\nset = {\"x'\" = \"-0.8*x'\"}\n";
@@ -178,7 +178,7 @@ TEST(DigitsToTrust, OfARunThatGoesOnAfterEvents) {
   EXPECT_LT(r.error(ColumnKind::velocity), 1e-14);
 }
 
-// Saturated friction looks constant where a step is made, and is not where it ends.
+// Saturated friction looks constant at the start of a step, but not at its end.
 TEST(DigitsToTrust, OfAMotionThatSteppedOverItsRestAreNone) {
   const Result r =
       until(kPoint + "[[force]]\non = \"P\"\nvector = \"-tanh(x'/0.01)*ex\"\n[initial]\nx = 0\n\"x'\" = 2\n", 5);
@@ -187,7 +187,7 @@ TEST(DigitsToTrust, OfAMotionThatSteppedOverItsRestAreNone) {
   EXPECT_GE(r.error(ColumnKind::velocity), error / 10);
 }
 
-// At the kinks of a force accelerations have kinks or jumps, and steps end there.
+// At the kinks of a force accelerations have kinks or jumps; steps end there.
 TEST(DigitsToTrust, RowsAtKinksAreComparedOnTheirSide) {
   const Result r = until(
       kPoint +
@@ -196,7 +196,7 @@ TEST(DigitsToTrust, RowsAtKinksAreComparedOnTheirSide) {
   EXPECT_LT(r.error(ColumnKind::acceleration), 1e-9);
 }
 
-// A kick so short that no step sees it: the rows do.
+// A kick is so short that no step notices it; the rows do.
 TEST(DigitsToTrust, OfAMotionThatSteppedOverAKickAreNone) {
   const std::string kicked =
       kPoint + "[[force]]\non = \"P\"\nvector = \"exp(-((t - 2.5)/0.01)^2)*ex\"\n[initial]\nx = 1\n\"x'\" = 0.01\n";
@@ -248,8 +248,8 @@ TEST(DigitsToTrust, LongDoubleIsJudgedInQuadruplePrecision) {
   EXPECT_GT(r.report.error->worst().digits, 14);
 }
 
-// Both runs round R + x alike where they compute in the same numbers: what cancels is lost in both, and no second run in
-// these numbers shows it.
+// Both runs round R + x alike if they compute in the same numbers: both lose the same digits by cancellation, so no
+// second run in these numbers shows the loss.
 constexpr const char* kFarCentre = R"toml(coordinates = ["x"]
 parameters = {R = 1e6}
 particle = [{name = "p", mass = 1, position = "x*ex"}]
@@ -273,7 +273,7 @@ TEST(DigitsToTrust, OfLongDoubleCountWhatCancelsInBothRuns) {
 }
 
 TEST(DigitsToTrust, AChaoticMotionLosesThem) {
-  // Six times as fast as in the file: it turns over.
+  // With six times the velocities of the file, the pendulum turns over.
   const std::string text = test::shipped_text("zoo/double-pendulum-cartesian");
   SimulationOptions o;
   o.tolerance = Rational(1, 100'000'000);
@@ -287,7 +287,7 @@ TEST(DigitsToTrust, AChaoticMotionLosesThem) {
     ASSERT_NO_FATAL_FAILURE(run(text, o, r));
     ASSERT_TRUE(r.report.error) << r.report.no_error;
     const KindError& worst = r.report.error->worst();
-    // Digits are whole: the error itself grows every time.
+    // Digits are whole numbers; the error itself grows every time.
     EXPECT_LT(worst.digits, before + (to > 15 ? 1 : 0)) << to;
     EXPECT_GT(worst.error, 2 * error) << to;
     before = worst.digits;
@@ -341,7 +341,7 @@ TEST(RowComparison, TakesZeroButForNoiseByTheGreatestOfItsKind) {
   RowComparison c = of_two();
   c.see({0, {3e-13, 1e-12}, {1e-13, 5}, {0, 0}});
   EXPECT_LT(c.report(1, 0).worst().error, 3e-13);
-  // A column that is lost, and no noise.
+  // The column has lost its digits; its error is no noise.
   RowComparison lost = of_two();
   lost.see({0, {0, 0}, {1e-4, 5}, {0, 0}});
   lost.see({1, {1e-4, 1e-12}, {1e-4, 5}, {0, 0}});
@@ -375,7 +375,7 @@ TEST(SampledRows, KeepTheFastPhaseOfALongRun) {
   EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.t < b.t; }));
 }
 
-// Both steps and walls are without an error but round-off, and the motion forgets its start: a second run with the same
+// Steps and walls have no error but round-off, and the motion depends on its last digits: a second run with the same
 // roundings would be the same run.
 const std::string kBilliard = R"toml(coordinates = ["x", "y"]
 particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
@@ -409,7 +409,7 @@ TEST(DigitsToTrust, OfABilliardAreThoseThatItsWallsLeave) {
   }
 }
 
-// The times of impacts are round-off of the time, which grows: it adds up.
+// The times of impacts have the round-off of the growing time, which adds up.
 TEST(DigitsToTrust, OfABallThatBouncesForLong) {
   const Result r = until("coordinates = [\"z\"]\ngravity.field = \"-10*ez\"\n"
                          "particle = [{name = \"p\", mass = 1, position = \"z*ez\"}]\n"

@@ -1,4 +1,5 @@
-// Rows by a kernel, side by side: the numbers of the reference to round-off, and the same bits in any company.
+// Rows by a kernel, side by side: their numbers are those of the reference to round-off, with the same bits in any
+// company.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -23,7 +24,7 @@ struct Rows {
     kernel = RowKernel::make(*s, outputs->all, 0, parameters, start, 1);
   }
   void expect_many() { kernel = RowKernel::make(*s, outputs->all, 0, parameters, start, 1, 100'000); }
-  // A place near the start that misses the constraints by little more than round-off, as those of steps do.
+  // A place near the start that misses the constraints by little more than round-off, as the ends of steps do.
   RowPlace near(int k) const {
     constexpr long double kNear = 1e-3L, kMissed = 1e-13L;
     RowPlace p = start;
@@ -42,13 +43,13 @@ struct Rows {
     change(kMissed, 3);
     return p;
   }
-  // The last place is in all lanes that are left.
+  // Computes the rows of the places; the remaining lanes hold the last place.
   void compute(const std::vector<RowPlace>& places) const {
     for (std::size_t lane = 0; lane < kernel->lanes(); ++lane)
       kernel->place(lane, places[std::min(lane, places.size() - 1)]);
     kernel->compute();
   }
-  // Every number of a lane.
+  // All numbers of a lane.
   std::vector<double> numbers(std::size_t lane) const {
     std::vector<double> list;
     for (std::size_t j = 0; j < s->system.size(); ++j)
@@ -56,7 +57,7 @@ struct Rows {
     for (std::size_t i = 0; i < outputs->all.size(); ++i) list.push_back(kernel->output(i, lane));
     return list;
   }
-  // The same by the reference, in long double.
+  // The same numbers by the reference, in long double.
   std::vector<double> reference(const RowPlace& p) {
     const Program program = anholon::program(s->system, s->structure);
     Expansion<long double> point(program, parameters, 1);
@@ -113,7 +114,7 @@ TEST_P(RowsOf, HaveTheSameBitsInAnyCompany) {
   }
 }
 
-// Many rows are computed in as many lanes as have machine code soon.
+// Many rows are computed in as many lanes as soon have machine code.
 TEST_P(RowsOf, HaveTheSameBitsWhereManyAreExpected) {
   Rows rows(GetParam());
   ASSERT_TRUE(rows.kernel);
@@ -130,7 +131,7 @@ TEST_P(RowsOf, HaveTheSameBitsWhereManyAreExpected) {
 INSTANTIATE_TEST_SUITE_P(Zoo, RowsOf,
                          testing::Values("zoo/disc", "zoo/chain", "zoo/snakeboard", "zoo/rattleback", "zoo/fourbar"));
 
-// Where the pivots were chosen they are good; where J is singular no row is trusted: a disc that lies flat.
+// Pivots are good at the state at which they are chosen. A row with a singular J is not trusted: a disc that lies flat.
 TEST(RowKernel, SaysWhereItIsNotToBeTrusted) {
   Rows rows("zoo/disc");
   ASSERT_TRUE(rows.kernel);
@@ -170,7 +171,8 @@ event = [{name = "turn", when = "x - 1", set = {push = "-push"}}]
   }
 }
 
-// 128 of the first 128 rows, 64 of the next 128 and of the next 256, then every eighth: 512, 520, …, 1000.
+// The report compares all of the first 128 rows, 64 of the next 128 and of the next 256, then every eighth: 512, 520,
+// …, 1000.
 TEST(RowKernel, TheReportLooksAtEverFewerRows) {
   Scenario s;
   SimulationOptions o;
@@ -184,7 +186,7 @@ TEST(RowKernel, TheReportLooksAtEverFewerRows) {
   EXPECT_EQ(r.rows_looked_at, 128U + 64U + 64U + 62U);
 }
 
-// A coefficient that a double holds stays; any other lies between the two roundings, which are neighbours.
+// A coefficient that a double holds stays; any other one lies between its two roundings, which are neighbours.
 TEST(Rounding, TheOtherOneIsOnTheOtherSide) {
   Rows rows("zoo/disc");
   const auto program = std::make_shared<const Program>(anholon::program(rows.s->system, rows.s->structure));

@@ -1,4 +1,4 @@
-// Which constraints are floors, and which only look a little like one.
+// Which constraints are floors, and which only resemble one.
 #include <gtest/gtest.h>
 
 #include "observe/floors/supports.h"
@@ -69,8 +69,8 @@ TEST(Supports, AreNoHingesRailsAndRods) {
       << "no gravity";
 }
 
-// Braked with 10 t at the height of the feet, the mass centre 1 above them: the load of the rear foot is m (g - a h /
-// l) / 2 with m a = 10 t.
+// The plate is braked with 10 t at the height of the feet, 1 below the mass centre: the load of the rear foot is m (g -
+// a h / l) / 2 with m a = 10 t.
 TEST(Supports, PullWhereTheLoadSaysSo) {
   Scenario s;
   ASSERT_TRUE(
@@ -80,7 +80,8 @@ TEST(Supports, PullWhereTheLoadSaysSo) {
   SupportWatch watch(s, floors(s, translations(s)));
   ASSERT_TRUE(watch.any());
   const std::vector<double> numbers(9, 0.0);
-  // lambda of both at three moments; the equation has its height on the left, so a multiplier is the force upwards.
+  // lambda of both feet at three moments; the equation has its height on the left, so a multiplier is the force
+  // upwards.
   const double loads[3][2] = {{9.81, 9.81}, {-1, 20.6}, {-4, 23.6}};
   for (int k = 0; k < 3; ++k) watch.see(k, [&](std::size_t r) { return loads[k][r]; }, numbers);
   const std::vector<std::string> notes = watch.notes();
@@ -91,7 +92,7 @@ TEST(Supports, PullWhereTheLoadSaysSo) {
             "rear.y = 0");
 }
 
-// The sign does not depend on the side on which the height stands, nor on which way the coordinate goes.
+// The sign depends neither on the side of the equation on which the height stands nor on the sense of the coordinate.
 TEST(Supports, TheSignIsThatOfTheForce) {
   const auto upwards = [](const std::string& text) {
     const auto list = floors_of(text);
@@ -108,7 +109,7 @@ TEST(Supports, TheSignIsThatOfTheForce) {
   EXPECT_EQ(upwards(depth), 1);
 }
 
-// A plane may be askew to gravity, and gravity to the axes; a ground is no plane.
+// A plane may be oblique to gravity, and gravity to the axes; a ground is no plane.
 TEST(Supports, AreSlopesAndGrounds) {
   const auto one = [](const std::string& text) {
     const auto list = floors_of(text);
@@ -127,14 +128,14 @@ TEST(Supports, AreSlopesAndGrounds) {
   EXPECT_EQ(askew.upwards, 2);
   EXPECT_FALSE(askew.level);
   EXPECT_TRUE(one(floor).level);
-  // The weight as a force.
+  // The weight is given as a force.
   const std::string force = "[[force]]\non = \"plate\"\nvector = ";
   EXPECT_EQ(one(test::replaced(floor, field, "") + force + "\"3*ex - 9*ey\"\n").upwards, 2);
   EXPECT_TRUE(floors(test::replaced(floor, field, "") + force + "\"3*ex - 9*t*ey\"\n").empty())
       << "a force that varies is no weight";
 }
 
-// A particle, in these coordinates.
+// A particle in the given coordinates.
 std::string particle(const std::string& coordinates, const std::string& position, const std::string& start) {
   return "coordinates = [" + coordinates +
          "]\ngravity.field = \"-9.81*ez\"\n[[particle]]\nname = \"bead\"\nmass = 2\nposition = \"" + position +
@@ -172,7 +173,7 @@ TEST(Supports, CarryNoHingesLinksAndDrives) {
                "position = \"P + 2*sin(b)*ex - 2*cos(b)*ez\"\n[initial]\nb = 1.2\n" +
                constraint("guide", "slider.z = 0"))
           .empty());
-  // A hinge in two equations.
+  // A hinge is written as two equations.
   const std::string rod =
       "coordinates = [\"x\", \"y\", \"theta\"]\ngravity.field = \"-9.81*ey\"\n[[body]]\nname = \"rod\"\nmass = 1\n"
       "inertia = 0.1\ncenter = \"x*ex + y*ey\"\nangle = \"theta\"\n[initial]\ny = -1\n" +
@@ -181,7 +182,7 @@ TEST(Supports, CarryNoHingesLinksAndDrives) {
   EXPECT_TRUE(carriers(rod).empty());
 }
 
-// Rolling that has a part along the normal shares the normal force with the surface.
+// Rolling with a component along the normal shares the normal force with the surface.
 TEST(Supports, CarryBallsThatRollAlongTheSurface) {
   const auto ball = [](const std::string& rolling) {
     return "coordinates = [\"x\", \"z\", \"phi\"]\ngravity.field = \"-9.81*ez\"\npoint.C = \"x*ex + z*ez\"\n[[body]]\n"

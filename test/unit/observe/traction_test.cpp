@@ -1,4 +1,4 @@
-// The friction that rolling needs, against closed forms, and systems for which nothing is known of a floor.
+// The friction that rolling needs, compared with closed forms, and systems for which no floor is known.
 #include <gtest/gtest.h>
 
 #include "observe/floors/traction.h"
@@ -20,7 +20,7 @@ std::string wheel(const std::string& more = "") {
          more + "[initial]\nz = \"R\"\n";
 }
 
-// A hoop without mass that carries a load at its rim; it turns so fast at first that the load would lift it.
+// A hoop without mass carries a load at its rim; it turns so fast at first that the load would lift it.
 const char* const kHoop =
     "coordinates = [\"x\", \"phi\"]\nparameters = {m = 2, M = 0.5, R = 0.3, g = 9.81}\nframe.B = \"roty(phi)\"\n"
     "gravity.field = \"-g*ez\"\npoint.C = \"x*ex + R*ez\"\n[[body]]\nname = \"hoop\"\nmass = \"M\"\ninertia = "
@@ -42,14 +42,14 @@ std::vector<std::string> notes(const std::string& text, const char* until = "1",
   return r.notes;
 }
 
-// mu = 2 M t/(3 R m g) = 10 t/3 passes 1 at 0.3 and is 3.33 at the end.
+// mu = 2 M t/(3 R m g) = 10 t/3 exceeds 1 from t = 0.3 on and is 3.33 at the end.
 TEST(Traction, IsThatOfADrivenWheel) {
   const std::vector<std::string> said = notes(wheel());
   ASSERT_EQ(said.size(), 1u);
   EXPECT_NE(said[0].find("need a friction above 1 from t = 0.3 on, at least 3.33 times the load at t = 1"),
             std::string::npos)
       << said[0];
-  // The time does not hang on the rows, and is the start where the friction is too small there.
+  // The time does not depend on the rows, and is the start if the friction is too small there.
   for (const Rational& every : {Rational(1), Rational(2, 5)})
     EXPECT_NE(notes(wheel(), "1", every)[0].find("from t = 0.3 on"), std::string::npos);
   const std::string constant = test::replaced(wheel(), "t*M*ey", "M*ey");
@@ -59,7 +59,7 @@ TEST(Traction, IsThatOfADrivenWheel) {
   EXPECT_TRUE(notes(test::replaced(wheel(), "g = 10", "g = 40")).empty()) << "a load four times as large";
 }
 
-// In long runs some of the later rows are looked at.
+// In long runs only some of the later rows are compared.
 TEST(Traction, IsSeenLateInALongRun) {
   const std::vector<std::string> said = notes(wheel(), "1", Rational(1, 20000));
   ASSERT_EQ(said.size(), 1u);
@@ -79,8 +79,9 @@ TEST(Traction, TellsAFloorThatPulls) {
   EXPECT_TRUE(notes(test::replaced(kHoop, "\"phi'\" = 20", "\"phi'\" = 1"), "0.1").empty());
 }
 
-// A disc rolls down a slope whose coordinates lie in its plane, without torque: the load is m g cos(slope), and friction
-// g sin(slope) - x'' with x'' = 2/3 g sin(slope), so it is tan(slope)/3 of the load, 1.0473 for 1.2626 and 0.9647 for 1.2383.
+// A disc rolls without torque down a slope whose coordinates lie in its plane: the load is m g cos(slope), and the
+// friction m (g sin(slope) - x'') with x'' = 2/3 g sin(slope), so it is tan(slope)/3 of the load, 1.0473 for 1.2626 and
+// 0.9647 for 1.2383.
 TEST(Traction, IsThatOfASlope) {
   const std::string slope =
       "coordinates = [\"x\", \"phi\"]\nparameters = {m = 2, R = 0.3, g = 10, slope = 1.2626}\ngravity.field = "

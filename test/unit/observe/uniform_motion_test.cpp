@@ -1,4 +1,5 @@
-// Residuals of motions whose accelerations are round-off: of terms that cancel, unless an error is larger than that.
+// Residuals of motions whose accelerations are round-off: they are compared with the terms that cancel, and a larger
+// error is noticed.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@
 namespace anholon::uniform_motion_test {
 namespace {
 
-// A sleigh that coasts: in the equation of th large terms cancel, and th'' is what round-off leaves of them.
+// A sleigh that coasts: large terms cancel in the equation of th, and th'' is the remaining round-off.
 Scenario sleigh(const char* form) {
   Scenario s;
   const Outcome o = make_scenario(test::model_of(R"toml(coordinates = ["x", "y", "th"]
@@ -35,7 +36,8 @@ TEST(UniformMotion, RoundOffIsComparedWithTheTermsThatCancel) {
     for (const char* name : {"newton", "projected"}) EXPECT_LT(newton(sleigh(form), name), 1e-16) << form << name;
 }
 
-// A force in an equation that is in no law of the points, far smaller than the terms that cancel.
+// A force in an equation that is in no law of the points is noticed even if it is far smaller than the terms that
+// cancel.
 TEST(UniformMotion, AnErrorIsSeen) {
   for (const char* form : {"routh", "chaplygin", "voronets"})
     for (const char* size : {"1", "1e-6", "1e-12"}) {

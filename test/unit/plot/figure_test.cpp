@@ -72,7 +72,7 @@ TEST(SeveralRuns, LieOverEachOtherWithTheirOwnTimes) {
   EXPECT_EQ(together.x_axis.to, 4);
   EXPECT_LT(together.panels[0].y.from, -1);
   EXPECT_GT(together.panels[0].y.to, 9);
-  // The second curve goes over the whole width, and the first over its half.
+  // The second curve covers the whole width, the first covers half of it.
   const auto first = curve(together, together.panels[0], s[0], 100, 100),
              second = curve(together, together.panels[0], s[1], 100, 100);
   EXPECT_NEAR(first.back().back().x, 50, 1);
@@ -105,7 +105,7 @@ TEST(Ticks, AreRound) {
   EXPECT_EQ(ticks({0, 2e6, false}, 3).note, "×10⁶");
 }
 
-// What differs in late digits is shown beyond a round number; both together are the number again.
+// Values that differ in late digits are labelled relative to a round number; base and label together give the value.
 TEST(Ticks, LateDigits) {
   const Ticks t = ticks({11.5983245949, 11.5983245953, false}, 5);
   ASSERT_GE(t.at.size(), 3u);
@@ -178,7 +178,7 @@ TEST(Figure, TimesAndPanels) {
   EXPECT_EQ(f.panels[1].series[0].y, (std::vector<double>{2, 5}));
 }
 
-// A million rows, one of which stands out: it is still there, and little else.
+// One of a million rows is an outlier: the curve keeps it, and few other points.
 TEST(Curve, KeepsExtremesOfManyRows) {
   const std::size_t n = 1'000'000;
   std::vector<double> t(n), y(n);
@@ -209,8 +209,8 @@ TEST(Curve, AFewRowsStayAsTheyAre) {
   EXPECT_EQ(pieces[0].size(), 3u);
 }
 
-// Sparse rows of a sine with its derivative: what is drawn between them is the sine, not the polygon. Where a value
-// jumps, nothing swings over.
+// Sparse rows of a sine with its derivative: the curve between them is the sine, not the polygon. At a jump the curve
+// stays between the values.
 TEST(Curve, IsSmoothBetweenTheRows) {
   std::vector<double> t, y, dy, ddy;
   for (int i = 0; i <= 20; ++i)
@@ -227,7 +227,7 @@ TEST(Curve, IsSmoothBetweenTheRows) {
     EXPECT_LE(f.panels[0].series[2].y[i], 5 + 1e-14);
   }
   for (std::size_t i = 0; i < t.size(); ++i) EXPECT_NE(std::find(f.x.begin(), f.x.end(), t[i]), f.x.end());
-  // A velocity that is turned round between two rows, under the same acceleration before and after.
+  // A velocity is reversed between two rows, with the same acceleration before and after.
   const Figure jump = make_figure(
       run({"t", "v", "v'"}, {{0, 1, 2, 3}, {0, -10, 10, 0}, {-10, -10, -10, -10}}), o = [] {
         FigureOptions p = of({"v"});
@@ -237,7 +237,7 @@ TEST(Curve, IsSmoothBetweenTheRows) {
   const std::vector<double>& v = jump.panels[0].series[0].y;
   EXPECT_EQ(*std::max_element(v.begin(), v.end()), 10);
   EXPECT_EQ(*std::min_element(v.begin(), v.end()), -10);
-  // Over another abscissa the rows are joined as they are.
+  // Over another abscissa the rows are joined by straight lines.
   o.names = {"y"}, o.x = "y'";
   EXPECT_EQ(make_figure(run({"t", "y", "y'"}, {t, y, dy}), o).x.size(), 21u);
 }
@@ -249,7 +249,7 @@ TEST(Curve, GapsAndPaths) {
   ASSERT_EQ(pieces.size(), 2u);
   EXPECT_EQ(pieces[0].size(), 2u);
   EXPECT_EQ(pieces[1].size(), 2u);
-  // A circle goes back and forth; its last point is there.
+  // A circle goes back and forth in x; its last point is kept.
   std::vector<double> t, x, y;
   for (int i = 0; i <= 10'000; ++i) t.push_back(i), x.push_back(std::cos(i * 1e-3)), y.push_back(std::sin(i * 1e-3));
   FigureOptions o = of({"y"});
@@ -258,7 +258,7 @@ TEST(Curve, GapsAndPaths) {
   const auto circle = curve(f, f.panels[0], f.panels[0].series[0], 100, 100);
   ASSERT_EQ(circle.size(), 1u);
   EXPECT_LT(circle[0].size(), 200u);
-  // Nothing that was left out is farther from the curve than can be seen.
+  // Points that are left out lie so near the curve that the distance is invisible.
   for (std::size_t i = 0; i < t.size(); i += 7) {
     const Point p{100 * f.x_axis.place(x[i]), 100 * f.panels[0].y.place(y[i])};
     double nearest = 1e9;
@@ -271,7 +271,7 @@ TEST(Curve, GapsAndPaths) {
     ASSERT_LT(nearest, 0.7) << i;
   }
   EXPECT_EQ(circle[0].back().x, 100 * f.x_axis.place(x.back()));
-  // A path that comes back the way it went turns at its end.
+  // A path that returns along itself turns at its end.
   const Figure back = make_figure(run({"t", "x", "y"}, {{0, 1, 2, 3}, {0, 5, 10, 3}, {0, 5, 10, 3}}), o);
   const auto turned = curve(back, back.panels[0], back.panels[0].series[0], 100, 100);
   ASSERT_EQ(turned[0].size(), 3u);
@@ -343,7 +343,7 @@ TEST(Figure, EqualAxesAreAsLongAsWhatTheyShow) {
   EXPECT_GE(f.panels[0].y.to, before.panels[0].y.to);
 }
 
-// A circle is one: as wide as it is high, on paper and in the dots of a terminal.
+// A circle is as wide as it is high, on paper and in the dots of a terminal.
 TEST(Figure, ACircleIsRound) {
   std::vector<double> t, x, y;
   for (int k = 0; k <= 200; ++k)
@@ -386,7 +386,7 @@ TEST(Cairo, SaysWhereItCannotWrite) {
 
 TEST(Cairo, DrawsTheSameBytes) {
 #ifdef __SANITIZE_ADDRESS__
-  const __lsan::ScopedDisabler kept;  // fontconfig keeps what it has read of fonts until the end
+  const __lsan::ScopedDisabler kept;  // fontconfig keeps its data of fonts until the end
 #endif
   FigureOptions o = of({"theta'", "lambda.*"});
   o.title = "Scheibe";
@@ -414,7 +414,7 @@ TEST(Cairo, DrawsTheSameBytes) {
   EXPECT_EQ(drawn(CairoFormat::png), png);
 }
 
-// Few rows of exp(-10 t): on a logarithmic axis the curve between them is the line on which the rows lie.
+// Few rows of exp(-10 t): on a logarithmic axis the curve between them is the line through the rows.
 TEST(Smooth, FollowsLogarithmsOnALogarithmicAxis) {
   std::vector<double> t, y, rate;
   for (int k = 0; k <= 10; ++k) t.push_back(0.5 * k), y.push_back(std::exp(-5.0 * k)), rate.push_back(-10 * y.back());

@@ -12,7 +12,7 @@ namespace anholon::plot::heat_map_test {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 TEST(HeatMap, HasACellForEachPairOfValues) {
-  // (x, y): value, in any order; the pair (2, 20) does not occur.
+  // (x, y): value, in any order; there is no case at (2, 20).
   const HeatMap m = make_heat_map({"x", "m", {2, 1, 1}}, {"y", "", {10, 10, 20}}, {"v", "", {5, 3, 7}}, {});
   EXPECT_EQ(m.x.values, (std::vector<double>{1, 2}));
   EXPECT_EQ(m.y.values, (std::vector<double>{10, 20}));
@@ -44,7 +44,8 @@ TEST(HeatMap, HasTheCellsOfPointsWhereCasesAreMissing) {
   EXPECT_EQ(m.values[0], 3);
   EXPECT_EQ(m.values[3], 5);
   for (const std::size_t empty : {1U, 2U, 4U, 5U}) EXPECT_TRUE(std::isnan(m.values[empty]));
-  // A cell reaches to the middle between two points; by themselves the cases would fill the width.
+  // A cell reaches to the middle between two points; if only the points of cases counted, the cases would fill the
+  // width.
   const std::vector<HeatMap::Finer> cells = cells_of_cases(x, y, {});
   EXPECT_EQ(cells[0].from.x, 1);
   EXPECT_EQ(cells[0].to.x, 3);
@@ -55,7 +56,7 @@ TEST(HeatMap, DrawsFurtherGenerationsAtTheirSizes) {
   const HeatMap m = make_heat_map(x, y, {"v", "", {1, 2, 3, 4, 5, 6}}, {}, {0, 0, 0, 1, 2, 1});
   EXPECT_EQ(m.x.values, (std::vector<double>{0, 2, 6}));
   ASSERT_EQ(m.finer.size(), 3U);
-  // Generation 1: half of the interval from 0 to 2, and of that from 2 to 6.
+  // The cells of generation 1 have half of the interval from 0 to 2, and half of that from 2 to 6.
   EXPECT_EQ(m.finer[0].from.x, 0.5);
   EXPECT_EQ(m.finer[0].to.x, 1.5);
   EXPECT_EQ(m.finer[0].from.y, -0.25);
@@ -71,7 +72,7 @@ TEST(HeatMap, DrawsFurtherGenerationsAtTheirSizes) {
               (d.patches[d.patches.size() - 3].to.x - d.patches[d.patches.size() - 3].from.x) / 2, 1e-9);
 }
 
-// Beyond the first and the last value no case tells how fine the cells are.
+// Beyond the first and the last value there are no cells.
 TEST(HeatMap, OfFurtherGenerationsEndsAtTheOutermostValues) {
   HeatMap m = make_heat_map({"x", "", {0, 4, 0, 4, 0, 1}}, {"y", "", {0, 0, 2, 2, 1, 0}}, {"v", "", {1, 2, 3, 4, 5, 6}},
                             {}, {0, 0, 0, 0, 1, 2});
@@ -81,7 +82,7 @@ TEST(HeatMap, OfFurtherGenerationsEndsAtTheOutermostValues) {
   double left = 1e9, right = -1e9;
   for (const auto& s : d.strokes)
     if (s.points.size() == 5) left = std::min(left, s.points[0].x), right = std::max(right, s.points[0].x);
-  // The scale at the right has a frame, too.
+  // The scale at the right has a frame as well.
   for (const auto& p : d.patches) {
     EXPECT_GE(p.from.x, left);
     EXPECT_LE(p.from.x, p.to.x);
@@ -121,7 +122,7 @@ TEST(HeatMap, PaintsEachCellInItsPlace) {
   const HeatMap m =
       make_heat_map({"x", "", {0, 1, 0, 1}}, {"y", "", {0, 0, 1, 1}}, {"v", "", {0, 1, 1, 0}}, {"a", "b"});
   const Drawing d = lay_out(m);
-  // Two patches of the legend, then the cells, the lower row first.
+  // Two patches belong to the legend; the cells follow, the lower row first.
   ASSERT_EQ(d.patches.size(), 6U);
   const Patch &low = d.patches[2], &high = d.patches[5];
   EXPECT_EQ(low.rgb, d.patches[0].rgb);

@@ -31,7 +31,7 @@ TEST(Labels, InUnicode) {
   EXPECT_EQ(unicode("N.theta 90 %"), "N_θ 90 %");
   EXPECT_EQ(unicode("(0)"), "(0)");
   EXPECT_EQ(unicode("a %"), "a %");
-  // Names of other programs stay as they are.
+  // Names in the style of other programs stay unchanged.
   EXPECT_EQ(unicode("v [m/s]"), "v [m/s]");
   EXPECT_EQ(text_label("theta'", "", LabelStyle::plain), "theta'");
 }

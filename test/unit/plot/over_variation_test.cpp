@@ -1,4 +1,4 @@
-// Columns of a sweep over the number that varies.
+// Columns of a sweep over the varied number.
 #include <cmath>
 #include <limits>
 

@@ -66,7 +66,7 @@ TEST(Spread, TakesBothSidesOfABorder) {
     if (cases[k].generation == 1) ++pairs[static_cast<std::size_t>(cases[k].outcome)];
   EXPECT_GE(pairs[0], 4U);
   EXPECT_GE(pairs[1], 4U);
-  // Without generations the border is no reason.
+  // Without generations the cases at the border are not preferred.
   for (SpreadCase& c : cases) c.generation = 0;
   const std::vector<std::size_t> plain = spread(cases, 16);
   EXPECT_LT(std::count_if(plain.begin(), plain.end(), [](std::size_t k) { return k >= 100; }), 8);

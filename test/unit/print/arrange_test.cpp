@@ -19,12 +19,12 @@ std::string paper(PlainNames& n, const std::string& text) {
 TEST(Arranged, LooksAsInAPaper) {
   PlainNames n;
   const std::pair<const char*, const char*> samples[] = {
-      // Equal coefficients are gathered, accelerations come first and once.
+      // Equal coefficients are gathered; accelerations come first and occur once.
       {"m*x'' + a*x'' - b*m*y''*sin(z) - a*b*y''*sin(z)", "(m + a)*(x'' - b*y''*sin(z))"},
       {"m*a*(z''*sin(z) + z'^2*cos(z)) + b*m*(z''*sin(z) + z'^2*cos(z)) - (m + 2)*x''",
        "-(2 + m)*x'' + m*(a + b)*(z''*sin(z) + z'^2*cos(z))"},
       {"a*z'' - b*m*x''*sin(z) + b*m*y''*cos(z) + b^2*m*z''", "(a + b^2*m)*z'' - b*m*(x''*sin(z) - y''*cos(z))"},
-      // Squares of sine and cosine in the shorter form.
+      // Squares of sine and cosine have the shorter form.
       {"a^2*sin(x)^2 + a^2*cos(x)^2", "a^2"},
       {"a*x'' - a*x''*cos(x)^2", "a*x''*sin(x)^2"},
       {"a*(1 - sin(x)^2) + b*cos(x)^2 + b*sin(x)^2", "a*cos(x)^2 + b"},
@@ -57,8 +57,8 @@ TEST(Arranged, KeepsTheNamesOfTheUser) {
   EXPECT_EQ(printed("a*x/sqrt(x^2 + y^2) + b*x/sqrt(x^2 + y^2)"), "(a + b)*x/r");
 }
 
-// Theorem. An arrangement is equal to the expression (by proof where there is one, else by its values), and no longer
-// than it and than its expansion.
+// Theorem. An arrangement is equal to the expression (by proof if one is found, else by its values), and it is no
+// longer than the expression and its expansion.
 TEST(Arranged, IsEqualAndNoLonger) {
   const PrecisionScope precision(60);
   const double tolerance = 1e-35;  // 60 digits, and cancellation between monomials of moderate size

@@ -9,7 +9,7 @@ namespace {
 
 using test::PlainNames;
 
-// Theorem. What the printer writes the parser reads back as the same expression.
+// Theorem. The parser reads the printed text back as the same expression.
 TEST(RoundTrip, PrintedTextParsesToTheSameExpression) {
   PlainNames n;
   const SymbolNames names = test::plain_symbol_names();
@@ -160,7 +160,7 @@ TEST(Mathml, Samples) {
     return "<mover>" + letter + "<mo stretchy=\"false\" scriptlevel=\"+0\">" + dots + "</mo></mover>";
   };
   EXPECT_EQ(derivative_name("<mi>x</mi>", 2, Format::mathml), dotted("<mi>x</mi>", "¨"));
-  // Over the letter and not over its index.
+  // Dots stand over the letter and not over its index.
   EXPECT_EQ(derivative_name(mathml_name("theta_1"), 1, Format::mathml),
             "<msub>" + dotted("<mi>θ</mi>", "˙") + "<mn>1</mn></msub>");
   EXPECT_EQ(derivative_name(mathml_name("x[1,2]"), 3, Format::mathml),
@@ -171,7 +171,7 @@ TEST(Mathml, Samples) {
   EXPECT_EQ(derivative_name(mathml_name("mass"), 1, Format::mathml), "<mi mathvariant=\"normal\">mass′</mi>");
   EXPECT_EQ(derivative_name(mathml_name("th_1"), 2, Format::mathml),
             "<msub><mi mathvariant=\"normal\">th″</mi><mn>1</mn></msub>");
-  // One level of subscripts.
+  // Subscripts have one level.
   EXPECT_EQ(mathml_name("x_left_wheel"), "<msub><mi>x</mi><mrow><mi mathvariant=\"normal\">left</mi><mspace "
                                          "width=\"0.1667em\"/><mi mathvariant=\"normal\">wheel</mi></mrow></msub>");
   PlainNames n;
@@ -186,7 +186,7 @@ TEST(Mathml, Samples) {
   EXPECT_EQ(mathml("sign(y)").substr(0, 12), "<mi>sgn</mi>");
 }
 
-// Every opening brace has its closing one, and \left its \right.
+// Every opening brace has a closing one, and every \left a \right.
 TEST(Latex, IsBalancedOnRandomExpressions) {
   PlainNames n;
   const auto occurrences = [](const std::string& text, const std::string& part) {

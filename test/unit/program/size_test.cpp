@@ -1,5 +1,5 @@
-// Equations and stepping program of an n-link chain grow linearly: common parts exist once, and no matrix is ever
-// inverted symbolically.
+// Equations and stepping program of an n-link chain grow linearly: common parts exist once, and no matrix is inverted
+// symbolically.
 #include <gtest/gtest.h>
 
 #include "program/program.h"
@@ -23,8 +23,8 @@ ProgramSize size_of_chain(int n) {
 }
 
 TEST(ProgramSize, OfAChainIsLinearInItsLinks) {
-  // The line through 64 and 128 links must hold at 256: below, sums are so short that they are written out. Beyond,
-  // they are made of blocks, which do not end where the chain does.
+  // The line through 64 and 128 links must hold at 256. Sums of fewer links are so short that they are written out;
+  // longer sums are made of blocks, whose ends are not those of the chain.
   constexpr double kBlocks = 1.02;
   const ProgramSize at64 = size_of_chain(64), at128 = size_of_chain(128), at256 = size_of_chain(256);
   const auto expect_line = [](const char* what, std::size_t a, std::size_t b, std::size_t c) {
@@ -50,7 +50,7 @@ std::size_t nodes_of_chain(int n) {
 TEST(EquationSize, OfAChainIsLinearInItsLinks) {
   const std::size_t at64 = nodes_of_chain(64), at128 = nodes_of_chain(128), at256 = nodes_of_chain(256),
                     at512 = nodes_of_chain(512);
-  // Sums of few links are written out, those of many are made of blocks: the line begins beyond.
+  // Sums of few links are written out, those of many are made of blocks: growth is linear for the latter.
   const double first = static_cast<double>(at128 - at64), second = static_cast<double>(at256 - at128),
                third = static_cast<double>(at512 - at256);
   EXPECT_NEAR(second / first, 2, 0.1) << at64 << ", " << at128 << ", " << at256;

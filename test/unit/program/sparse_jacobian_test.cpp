@@ -1,4 +1,5 @@
-// The sparse Jacobian of a chain grows with its links, has the numbers of the full one, and says where it is singular.
+// The sparse Jacobian of a chain grows with its links, has the entries of the full one, and is reported where it is
+// singular.
 #include <gtest/gtest.h>
 
 #include "program/expansion.h"
@@ -48,8 +49,8 @@ TEST(SparseJacobian, OfAChainGrowsWithItsLinks) {
     entries.push_back(static_cast<double>(e.system_jacobian().sparse().entries()) / n);
     terms.push_back(static_cast<double>(e.system_jacobian().sparse().partials().size()) / n);
   }
-  // Sums of many links are trees of blocks: the number of entries of a link grows with their depth, the logarithm of the
-  // number of links.
+  // Sums of many links are trees of blocks: the number of entries of a link grows with their depth, the logarithm of
+  // the number of links.
   constexpr double kBlocks = 1.1;
   EXPECT_LE(terms[2], kBlocks * terms[0]) << terms[0] << ", " << terms[1] << ", " << terms[2];
   EXPECT_LE(entries[2] - entries[1], kBlocks * (entries[1] - entries[0]))
@@ -57,8 +58,7 @@ TEST(SparseJacobian, OfAChainGrowsWithItsLinks) {
   EXPECT_LE(entries[2], 200) << "a full matrix has 512 a link";
 }
 
-// Where the links lie in a line, many pivots of the usual order are small, and those in their place would fill the
-// factors.
+// If the links lie in a line, many pivots of the usual order are small, and other pivots would fill the factors.
 TEST(SparseJacobian, OfAHorizontalChainHasAsFewEntries) {
   constexpr std::size_t kLinks = 600;
   Chain chain(kLinks);
@@ -147,7 +147,7 @@ TEST(SparseJacobian, OfAChainWithoutMassIsSingular) {
   EXPECT_FALSE(e.system_jacobian().is_sparse()) << "the full matrix has the last word";
 }
 
-// The same motion by sparse and by dense factors: in quadruple precision J is always written down.
+// Sparse and dense factors give the same series; in quadruple precision J is always dense.
 TEST(SparseJacobian, LeadsToTheSameSeries) {
   const Chain chain(80);
   constexpr int kStages = 12;

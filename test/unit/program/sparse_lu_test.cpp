@@ -6,7 +6,7 @@
 namespace anholon::sparse_lu_test {
 namespace {
 
-// Slots of a program in terms of the unknowns a and b: (1.03 + 1.77 p)^2 q, multiplied out with whole coefficients.
+// Slots of a program in terms of the unknowns a and b: (1.03 + 1.77 p)^2 q, expanded with whole coefficients.
 enum Column : std::uint32_t { a, b, s13, s15, s16, s20, s22, s23, s24, kColumns };
 
 struct Term {

@@ -1,4 +1,4 @@
-// A large Jacobian in long double is factored in double: its solutions have the digits of the long factors.
+// A large Jacobian in long double is factored in double: its solutions have the digits of long double factors.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -67,7 +67,7 @@ TEST(SystemLu, SolvesToTheDigitsOfLongDouble) {
   EXPECT_LE(largest(residual(a, b, x)), 4 * largest(residual(a, b, y))) << "all passes have those of long double";
 }
 
-// Two rows that differ by less than double shows.
+// Two rows differ by less than a double resolves.
 Matrix<W> nearly_singular(std::size_t n, W difference) {
   Matrix<W> a = random_matrix(n, 5);
   for (std::size_t j = 0; j < n; ++j) a(1, j) = a(0, j) + difference * a(1, j);

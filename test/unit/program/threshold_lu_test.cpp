@@ -1,5 +1,5 @@
-// Sparse factors with threshold pivoting solve as dense ones do, keep the order of elimination where its pivots are not
-// small, and leave it where they are.
+// Sparse factors with threshold pivoting give the solutions of dense factors. They keep the order of elimination as
+// long as its pivots are not small, and leave it otherwise.
 #include <numeric>
 #include <random>
 
@@ -69,7 +69,7 @@ TYPED_TEST(ThresholdLuOf, SolvesAsDenseFactorsDo) {
 }
 
 TEST(ThresholdLu, KeepsTheOrderWhereItsPivotsAreNotSmall) {
-  // An arrow: from its point on all is filled in, from the other end nothing is.
+  // An arrow matrix: elimination from its point fills in everything, from the other end nothing.
   constexpr std::uint32_t kSize = 40;
   SparseColumns a{{0}, {}};
   std::vector<double> values;
@@ -97,7 +97,7 @@ TEST(ThresholdLu, StopsWhereItFillsInTooMuch) {
 }
 
 TEST(ThresholdLu, LeavesTheOrderWhereAPivotIsSmall) {
-  // Eliminated by the small diagonal, it loses all digits.
+  // Elimination by the small diagonal loses all digits.
   const SparseColumns a{{0, 2, 4}, {0, 1, 0, 1}};
   const std::vector<double> values{1e-20, 1, 1, 1};
   ThresholdLu<double> lu;

@@ -11,7 +11,7 @@ namespace {
 
 using Operation = Certificate::Operation;
 
-// x sin²(x/2 + π) / √y against atan2, with one claim of each kind.
+// x sin²(x/2 + π) / √y and atan2, with one claim of each kind.
 Certificate sample() {
   Certificate c;
   c.program = "anholon test";
@@ -126,7 +126,7 @@ TEST(CertificateFormat, DepthAndSizeAreLimited) {
   EXPECT_EQ(refusal(std::string((std::size_t{64} << 20) + 1, ' ')), "the certificate is longer than 64 MiB");
   EXPECT_EQ(refusal(replaced(to_json(sample()), "ideal reactions", std::string(10'001, 'x'))),
             "hypotheses[0]: a text longer than 10000 bytes");
-  // A short text of huge numbers.
+  // A short text holds huge numbers.
   std::string numbers;
   for (int i = 0; i < 20'000; ++i) numbers += (i ? ",[" : "[") + std::to_string(i) + ",\"number\",\"1e5000\"]";
   const std::string head =
@@ -134,7 +134,7 @@ TEST(CertificateFormat, DepthAndSizeAreLimited) {
   EXPECT_NE(refusal(head + numbers + R"(],"claims":[]})").find("too many digits"), std::string::npos);
 }
 
-// Any bytes are either read or refused by a Failure, and what is read is written as it stands.
+// Any bytes are either read or refused by a Failure, and a certificate that is read is written unchanged.
 TEST(CertificateFormat, SurvivesMutatedBytes) {
   const std::string good = to_json(sample());
   std::mt19937_64 random(1);

@@ -15,7 +15,7 @@ struct Symbols {
   Expr number(const Rational& r) const { return x.graph->number(r); }
   bool shown(Expr e) const { return shown_zero_in_few_functions(e, Effort::full); }
 
-  // Formulas in all functions that are written anew.
+  // Formulas in all functions that are rewritten.
   std::vector<Expr> formulas() const {
     const Expr u = x - 2 * y;
     return {abs(u) * u,
@@ -128,7 +128,7 @@ TEST(FewFunctions, ShowChoicesBySigns) {
   EXPECT_TRUE(s.shown(select(2 * x - 2 * y, x, y) + select(y - x, x, y) - x - y));
   EXPECT_TRUE(s.shown(select(x, x * x, zero) + select(-x, x * x, zero) - x * x));
   EXPECT_TRUE(s.shown(select(x, log(x * x), 2 * log(-x)) - 2 * log(abs(x))));
-  // The mutants: the first differs where x is zero.
+  // The mutants; the first differs at x = 0.
   EXPECT_FALSE(s.shown(above(x, one, -one) - sign(x)));
   EXPECT_FALSE(s.shown(select(x, one, -one) - sign(x)));
   EXPECT_FALSE(s.shown(select(x, x, -x) - x));
@@ -136,7 +136,7 @@ TEST(FewFunctions, ShowChoicesBySigns) {
   EXPECT_FALSE(s.shown(select(x, x + y, y - x) - abs(x)));
 }
 
-// The mutants: each holds at points of one sign, or differs by a term.
+// The mutants: each holds for one sign only, or differs by a term.
 TEST(FewFunctions, DoNotShowWhatDiffers) {
   const Symbols s;
   const auto &x = s.x, &y = s.y;

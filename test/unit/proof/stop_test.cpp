@@ -1,5 +1,5 @@
-// Stop requests (base/stop.h) in the prover, in a comparison and in a derivation: whenever the request comes, what was
-// not shown is never called equal, and a computation that is stopped says so.
+// Stop requests (base/stop.h) in the prover, in a comparison and in a derivation. At whatever time the request comes,
+// only proved equalities are called equal, and a stopped computation is reported as stopped.
 #include <gtest/gtest.h>
 
 #include "base/stop.h"
@@ -18,7 +18,7 @@ struct Attempt {
   std::size_t looks = 0;  // how often the request was asked
 };
 
-// All forms of the model, with a request that says yes from the look number `at` on, counted from 0.
+// Proves all forms of the model; the stop request is answered by yes from look number `at` on, counted from 0.
 Attempt attempt(const std::string& name, std::size_t at) {
   const std::shared_ptr<const Model> model = test::shipped(name);
   const Mechanics m = mechanics(*model);
@@ -46,7 +46,7 @@ TEST(Stop, ProofThatIsStoppedAtAnyLookCallsNothingEqualThatWasNotShown) {
   std::size_t without_tangents = 0, compared_before = 0;
   constexpr std::size_t kPlaces = 60;
   for (std::size_t k = 0; k <= kPlaces; ++k) {
-    // All of the proof, from its first look to its last one.
+    // The stops cover the whole proof, from its first look to its last one.
     const std::size_t at = (whole.looks - 1) * k / kPlaces;
     const Proof p = attempt(name, at).proof;
     ASSERT_TRUE(p.stopped) << at;
@@ -65,7 +65,8 @@ TEST(Stop, ProofThatIsStoppedAtAnyLookCallsNothingEqualThatWasNotShown) {
     }
     without_tangents += p.compared == p.forms.size();
   }
-  // Some requests come when all forms are compared and the tangents are not: with the tangents, these pairs are equal.
+  // Some requests come after all forms are compared and before the tangents are: with the tangents, these pairs are
+  // equal.
   EXPECT_GT(without_tangents, 0U);
   std::size_t equal = 0;
   for (std::size_t a = 0; a < whole.proof.forms.size(); ++a)
@@ -118,7 +119,7 @@ TEST(Stop, ScopesNestAndEndWithTheirBlock) {
 TEST(Stop, ComparisonThatIsStoppedHasNoVerdict) {
   std::size_t all = 0;
   const auto compared = [&](std::size_t at) -> std::optional<Verdict> {
-    // A model of its own: what an earlier attempt has derived would be known.
+    // The model is a new one, since derived expressions of an earlier attempt would be known.
     const OpenModel model = test::open_text(test::shipped_text("zoo/chaplygin-sleigh"));
     Subject subject(model);
     std::size_t looks = 0;

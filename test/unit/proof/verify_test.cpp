@@ -18,7 +18,7 @@ using Index = Certificate::Index;
 using Operation = Certificate::Operation;
 using Kind = Certificate::ClaimKind;
 
-// Builds certificates by hand: plain nodes, nothing is simplified.
+// Builds certificates by hand from plain nodes; nothing is simplified.
 struct Builder {
   Certificate c;
   struct Expr {
@@ -66,7 +66,7 @@ ClaimFinding check(const Formula& f, VerifyOptions options = {}) {
   Builder b;
   const Expr x = b.symbol("x"), y = b.symbol("y"), z = b.symbol("z");
   b.zero(f(x, y, z));
-  // By way of the text: what is checked is what was written.
+  // The certificate is written and read, so that the written text is checked.
   return verify(read_certificate(to_json(b.c)), options).claims[0];
 }
 
@@ -194,7 +194,7 @@ TEST(VerifyZero, MutantsAreContradicted) {
   }
 }
 
-// The finite fields alone tell the mutants from identities, whatever the seed.
+// Finite fields alone distinguish the mutants from identities, for any seed.
 TEST(VerifyZero, TheTestModuloPrimesStandsAlone) {
   for (int seed = 0; seed < 5; ++seed)
     for (const Law& law : laws()) {
@@ -210,7 +210,7 @@ TEST(VerifyZero, TheTestModuloPrimesStandsAlone) {
     }
 }
 
-// What has no rule is not confirmed, and as no real point shows a difference it is not contradicted.
+// A formula without a rule is not confirmed, and as no real point shows a difference, it is not contradicted.
 TEST(VerifyZero, WhatHasNoRuleIsLeftOpen) {
   for (const Formula& f :
        std::vector<Formula>{[](Expr x, Expr y, Expr) { return log(x * y) - log(x) - log(y); },
@@ -226,7 +226,7 @@ TEST(VerifyZero, WhatHasNoRuleIsLeftOpen) {
             "no point was found where it is defined and its roots exist");
 }
 
-// A multiple of the primes at hand vanishes modulo each of them; real points are not deceived.
+// A multiple of the known primes vanishes modulo each of them, but not at real points.
 TEST(VerifyZero, NumbersMadeForThePrimesAreContradicted) {
   Rational product = 1;
   for (const auto p : verification::kPrimes) product *= Rational(p);
@@ -234,7 +234,7 @@ TEST(VerifyZero, NumbersMadeForThePrimesAreContradicted) {
   EXPECT_EQ(f.finding, Finding::contradicted);
 }
 
-// The choice of signs at a prime that has no small non-residue must be the one of real numbers.
+// At a prime without a small non-residue, the choice of signs must agree with that of real numbers.
 TEST(VerifyZero, SignsThatOnlyAPrimeChoosesAreContradicted) {
   const ClaimFinding f = check(
       [](Expr x, Expr, Expr) { return sqrt(pow(x, 2)) / x + sqrt(pow(Rational(53) * x, 2)) / (Rational(53) * x); });
@@ -247,7 +247,7 @@ TEST(VerifyZero, TheBoundFollowsTheDegree) {
   EXPECT_LT(low, high);
   EXPECT_LE(high, -40);
   EXPECT_LT(check(power(2), {12, 0}).log2_chance, low);
-  // The degree of x^(1000^7) says nothing any more, at any point: saturated, not wrapped.
+  // The degree of x^(1000^7) saturates, and does not wrap around.
   const ClaimFinding none = check([](Expr x, Expr, Expr) {
     Expr t = x, s = x;
     for (int i = 0; i < 7; ++i) t = pow(t, 1000), s = pow(s, 1000);
@@ -273,7 +273,7 @@ TEST(VerifyZero, CombinationsAndKernels) {
   EXPECT_FALSE(Verification{}.all_confirmed()) << "an empty certificate confirms nothing";
 }
 
-// One claim with a root of x must not keep another from the points where x is no square.
+// A claim with a root of x must not keep another claim from the points at which x is no square.
 TEST(VerifyZero, ClaimsDoNotHelpEachOther) {
   Builder b;
   const Expr x = b.symbol("x");
@@ -290,7 +290,7 @@ TEST(VerifyZero, ClaimsDoNotHelpEachOther) {
   EXPECT_EQ(v.claims[4].finding, Finding::confirmed) << v.claims[4].detail;
 }
 
-// Every tampering with one node of a true certificate is noticed, unless it leaves the function alone.
+// Every change of one node of a true certificate is noticed, unless the function stays the same.
 TEST(VerifyZero, TamperedNodesAreNoticed) {
   Builder b;
   const Expr x = b.symbol("x"), y = b.symbol("y");
@@ -305,7 +305,8 @@ TEST(VerifyZero, TamperedNodesAreNoticed) {
         Certificate c = b.c;
         c.nodes[i].terms[k].weight += by;
         const ClaimFinding f = verify(c).claims[0];
-        // The factor x² and the factor that is zero itself may change; the latter not to 1/0.
+        // A change of the factor x², or of the factor that is zero itself, leaves the claim true, unless the latter
+        // becomes 1/0.
         if (f.finding == Finding::confirmed) continue;
         ++noticed;
         if (f.detail == "no point was found where it is defined") continue;
@@ -326,7 +327,7 @@ TEST(VerifyZero, TheSameTextGivesTheSameAnswer) {
   EXPECT_NE(verify(b.c).claims[0].detail, first) << "so does the text";
 }
 
-// A chain of doublings is small as a certificate and absurd as a number.
+// A chain of doublings is small as a certificate, but its numbers are enormous.
 TEST(Verify, HostileCertificatesEnd) {
   const auto start = std::chrono::steady_clock::now();
   for (const int kind : {0, 1, 2, 3}) {
@@ -415,7 +416,7 @@ TEST(VerifyNonzero, ADoubleRootIsNoWitness) {
   EXPECT_EQ(verify(w.b.c).claims[0].detail, "no root of the witness's equations could be proved in its box");
 }
 
-// Derivatives against difference quotients, for all functions.
+// Derivatives are compared with difference quotients, for all functions.
 TEST(RealProgram, DerivativesAreThoseOfTheValues) {
   const BallScope precision(256);
   for (const std::string& name : Certificate::functions()) {

@@ -6,8 +6,7 @@
 namespace anholon::witness_test {
 namespace {
 
-// exp x - cosh x - sinh x is zero, which nothing but algebra can say: 1e-400 beside it takes that many digits to be
-// seen.
+// exp x - cosh x - sinh x is zero, which only algebra proves. A term of 1e-400 beside it needs more than 400 digits.
 TEST(Witness, TellsFromZeroWhatTheDigitsResolve) {
   const auto model =
       test::model_of("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n");

@@ -1,5 +1,5 @@
-// The examples of Luo and Zhao with functions of time left open: what a machine has read of each equation, and what it
-// has to read.
+// The examples of Luo and Zhao with open functions of time: each equation as a machine has read it, and its correct
+// reading.
 #include <gtest/gtest.h>
 
 #include "support/models.h"
@@ -12,7 +12,7 @@ std::vector<PublishedEquation> shipped_equations(test::Published& p, const std::
   return p.read(test::file_text(test::source_dir() / "models/papers" / (name + ".eq")));
 }
 
-// What is false is repaired in one way, and then reads as restored.
+// A false reading is repaired in exactly one way, which is the restored equation.
 class AsRead : public testing::TestWithParam<const char*> {};
 
 TEST_P(AsRead, EachLossIsNamed) {

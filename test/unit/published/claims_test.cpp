@@ -1,4 +1,4 @@
-// Tables of claims: how a tag may be spelt, what is wrong with a table, and how a claim is decided.
+// Tables of claims: the spellings of a tag, mistakes in a table, and the decision of a claim.
 #include <gtest/gtest.h>
 
 #include "published/decide.h"
@@ -50,7 +50,7 @@ formula = "Gamma"
   is = "true"
   mutant = "Gamma.x = x'"
 )toml";
-// The acceleration is 1 or -1, and the equations leave open which.
+// The acceleration is 1 or -1; the equations leave the sign open.
 const char* const kTwoWays = R"toml(coordinates = ["x", "y"]
 particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
 [[constraint]]
@@ -123,10 +123,10 @@ TEST(Claims, AreDecided) {
       const Decision d = decider.decide(k);
       EXPECT_TRUE(d.as_expected()) << c.tag << ": " << d.detail;
     }
-  EXPECT_TRUE(paper.claims[1].holds());  // what is false is what was read
+  EXPECT_TRUE(paper.claims[1].holds());  // the reading is false
 }
 
-// A table that says the wrong thing, or whose mutant is as true as the claim, is found.
+// A wrong table, or a mutant that is as true as the claim, is noticed.
 TEST(Claims, MutantsMustFail) {
   Decider decider(load);
   ClaimCheck k = table().claims[0].checks[0];
@@ -154,7 +154,7 @@ TEST(Claims, AMotionThatIsNotUnique) {
   EXPECT_TRUE(decider.decide(k).as_expected()) << decider.decide(k).detail;
   k.points[1].back().second = "1";  // no solution of Routh's equations
   EXPECT_FALSE(decider.decide(k).as_expected());
-  k.points[1] = k.points[0];  // the same one
+  k.points[1] = k.points[0];  // the same state twice
   EXPECT_FALSE(decider.decide(k).as_expected());
   k.points[1][2].second = "1";  // another state
   EXPECT_EQ(decider.decide(k).verdict, Verdict::unknown);

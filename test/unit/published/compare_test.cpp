@@ -55,7 +55,7 @@ TEST(Compare, HolonomicConstraintsAndTheirConsequences) {
   EXPECT_NE(s.what("2*lambda*l^2 = m*g*y - m*(x'^2 + y'^2)").find("with rod put in"), std::string::npos);
 }
 
-// A rocket that burns its fuel, a state: its rate stands for its derivatives.
+// A rocket that burns its fuel, which is a state: the formula of its rate replaces its derivatives.
 TEST(Compare, RatesOfStatesBelongToTheDerivedEquations) {
   Compared s(R"toml(coordinates = ["x"]
 parameters = {m0 = 2, c = 3, q = 0.1}
@@ -72,7 +72,7 @@ particle = [{name = "r", mass = "m0 + fuel", position = "x*ex", expelled_velocit
   EXPECT_EQ(s.compare("(m0 + fuel)*x'' = fuel'*c").verdict, Verdict::refuted);
 }
 
-// A number in place of a parameter is true for the file alone.
+// An equation with a number in place of a parameter is true only for the values of the file.
 TEST(Compare, NumbersOfTheFile) {
   Compared s(R"toml(coordinates = ["th"]
 parameters = {J = 0.5, c = 0.7, k = 2}
@@ -148,7 +148,7 @@ TEST(Compare, AnEquationWithoutAValueIsUnknown) {
 TEST(Compare, NamesTheMisprint) {
   Compared s(test::kSleigh);
   EXPECT_EQ(s.change("m*x'' = lambda*sin(th)"),
-            "lambda*sin(th) -> -lambda*sin(th)");  // and not the left side, which is the same
+            "lambda*sin(th) -> -lambda*sin(th)");  // the equal left side is not named
   EXPECT_EQ(s.change("m*x'' = -lambda*cos(th)"), "-lambda*cos(th) -> -lambda*sin(th)");
   Compared p(kPendulum);
   EXPECT_EQ(p.change("m*y'' = 2*lambda*y + m*g"), "+ m*g -> - m*g");
@@ -171,7 +171,7 @@ TEST(Compare, TheSamePlaceInTheFile) {
   ASSERT_TRUE(c.witness);
 }
 
-// Constraints that are nonlinear in their highest derivatives: Routh's equations are no linear equations then.
+// Constraints that are nonlinear in their highest derivatives make Routh's equations nonlinear.
 TEST(Compare, NonlinearConstraintsOfHigherOrder) {
   for (const int m : {2, 3}) {
     const std::string order = std::to_string(m);
@@ -194,8 +194,8 @@ equation = "D(z,)toml" +
   }
 }
 
-// A constraint of lower order is lifted for the elimination, and holds itself on the motion: what is true by it is not
-// refuted.
+// A constraint of lower order is lifted for the elimination and holds itself on the motion: an equation that is true by
+// this constraint is not refuted.
 TEST(Compare, ALowerConstraintBesideANonlinearOneHolds) {
   Compared s(R"toml(coordinates = ["x", "y", "z", "w"]
 parameters = {m = 2, k = 3}
@@ -211,7 +211,7 @@ equation = "D(z,3) = D(x,3)^2 + D(w,3)^2"
   EXPECT_NE(s.compare("along(inertia_term, x) + k*(y' - x) = along(G, x)").verdict, Verdict::refuted);
 }
 
-// The multiplier is eliminated with derivatives of the third order, which the constraint relates.
+// The multiplier is eliminated with third derivatives, which the constraint relates.
 TEST(Compare, ConstraintOfThirdOrderThatIsNonlinear) {
   Compared s(R"toml(coordinates = ["x", "y"]
 parameters = {m = 2, g = 9}

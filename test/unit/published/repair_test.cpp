@@ -9,7 +9,7 @@
 namespace anholon::repair_test {
 namespace {
 
-// Everything that varies is unknown: the mass, the spin of the observer, a force p' e_x.
+// All varying quantities are unknown functions: the mass, the spin of the observer, a force p' e_x.
 const char* const kRocket = R"toml(coordinates = ["x", "y"]
 parameters = {k = 2, u = 1.5}
 functions = {m = {}, w = {}, p = {}}
@@ -59,7 +59,7 @@ equation = "z' = x*y'"
 class Repaired : public test::Published {
  public:
   using Published::Published;
-  // "from -> to" of the places of the only change; of several changes the number.
+  // "from -> to" of all places of the only change, or the number of changes if there are several.
   std::string change(const std::string& equation) {
     const Comparison c = compare(equation);
     if (c.verdict != Verdict::refuted) return name(c.verdict);
@@ -108,7 +108,7 @@ TEST(Repair, EachPlaceOfAChange) {
   EXPECT_TRUE(c.changes[0].proved);
 }
 
-// Where the changes do not add.
+// The changes of one product do not add.
 TEST(Repair, LostDotsInFactorsOfOneProduct) {
   Repaired p(kPolar);
   ASSERT_EQ(p.compare("m*(r^2*psi'' + 2*r*r'*psi') = 2*lambda*r^2*psi'").verdict, Verdict::proved);
@@ -139,7 +139,7 @@ TEST(Repair, ASymbolThatLostItsDotsEverywhere) {
   ASSERT_EQ(c.changes.size(), 1U);
   ASSERT_EQ(c.changes[0].places.size(), 5U);
   for (const ChangedPlace& p : c.changes[0].places) EXPECT_EQ(p.from + " -> " + p.to, "p -> p'");
-  // Beside a lost dot.
+  // A dot is lost besides.
   const std::size_t at = wrong.find("m'");
   const Comparison two = r.compare(std::string(wrong).replace(at, 2, "m"));
   ASSERT_EQ(two.changes.size(), 1U);
@@ -152,7 +152,7 @@ TEST(Repair, LostDotsBesideAnotherMisprint) {
             "p -> p', m -> m', - m*(2*w*y' + w'*y + w^2*x) -> + m*(2*w*y' + w'*y + w^2*x)");
   EXPECT_EQ(r.change("m*x = p' - k*x - m*u + m*(w*y' + w'*y + w^2*x)"), "x -> x'', m -> m', w*y' -> 2*w*y'");
   EXPECT_EQ(r.change("m*x'' = p - k*y - m'*u + m*(2*w*y' + w'*y + w^2*x)"), "p -> p', y -> x");
-  // An exponent that stands on the neighbour.
+  // An exponent stands at the neighbouring factor.
   Repaired p(kPolar);
   EXPECT_EQ(p.change("m*(r^2*psi'' + 2*r*r'*psi') = 2*lambda*r*psi'^2"), "2*lambda*r*psi'^2 -> 2*lambda*r^2*psi'");
   EXPECT_EQ(p.change("m*(r^2*psi'' + 2*r*r*psi') = 2*lambda*r*psi'^2"),
@@ -188,7 +188,7 @@ TEST(Repair, IndicesInDerivedWords) {
   EXPECT_EQ(p.change("N.psi = 2*lambda*r^2*psi"), "2*lambda*r^2*psi -> 2*lambda*r^2*psi'");
 }
 
-// What a quantity is: no equation of motion.
+// Equations that define a quantity are identities, no equations of motion.
 TEST(Repair, Identities) {
   Repaired r(kRocket);
   const Comparison c = r.compare("QR.x = -m*u");
@@ -206,16 +206,16 @@ TEST(Repair, Identities) {
   EXPECT_EQ(r.change("vel(P, inertial).x = x' + w*y"), "+ w*y -> - w*y");
   EXPECT_EQ(r.change("acc(P, inertial).x = x - 2*w*y - w*y - w^2*x"), "x -> x'', y -> y', w -> w'");
   EXPECT_EQ(r.change("partial(T_r, y') = m*x'"), "2");  // by x', or m*y'
-  // Without such words, if no acceleration stands in it.
+  // Equations without such quantities are identities if no acceleration occurs.
   EXPECT_EQ(r.change("(x*y)' = x'*y + x*y"), "x*y -> x*y'");
   EXPECT_EQ(r.change("cos(2*x) = 1 - 2*sin(y)^2"), "2");
-  // None that is repaired.
+  // This identity cannot be repaired.
   const Comparison none = r.compare("QR.x = k*w*p*cos(x)");
   EXPECT_TRUE(none.identity);
   EXPECT_TRUE(none.changes.empty());
 }
 
-// An equation of motion is not repaired by making it say nothing.
+// No repair of an equation of motion makes it trivial.
 TEST(Repair, NothingIsMadeTrivial) {
   Repaired t(kTwo);
   for (const char* wrong : {"m*x'' = m*y''", "x' = y'", "lambda.a = lambda.b", "x'' = z''", "m*x'' = m*z''*x"})
@@ -225,7 +225,7 @@ TEST(Repair, NothingIsMadeTrivial) {
   EXPECT_EQ(r.change("QR.x = QR.y"), "0");  // and not 0 = 0
 }
 
-// The derivative by psi vanishes by sin^2 + cos^2 = 1, and so does that by psi'': nothing is said if both stand there.
+// The derivatives by psi and by psi'' both vanish, the former by sin^2 + cos^2 = 1: no repair equates them.
 TEST(Repair, SidesThatVanishAreNoIdentity) {
   Repaired r("coordinates = [\"r\", \"psi\"]\nparticle = [{name = \"p\", mass = 2, position = [\"r*cos(psi)\", "
              "\"r*sin(psi)\", \"0\"]}]\n");
@@ -258,7 +258,7 @@ TEST(Repair, AVectorEquationByComponents) {
 
 // ---- in numbers --------------------------------------------------------------------------------
 
-// What is computed from numbers is what the changed formula is, for all changes of one place and of two.
+// Numbers computed by a trial agree with the changed formula, for all changes of one place and of two.
 TEST(Trial, AgreesWithTheChangedFormula) {
   Repaired r(kRocket);
   EquationsOfMotion motion(r.subject().mechanics(), 2, {});
@@ -307,7 +307,7 @@ TEST(Trial, AgreesWithTheChangedFormula) {
   EXPECT_GT(multiplied, 300U);
 }
 
-// The one term that is wrong, lost or too much; the changed equation is true when it is read again.
+// One term is wrong, missing or superfluous; the changed equation is true when it is read again.
 TEST(Repair, WrongTerm) {
   Repaired r(kRocket);
   const std::pair<const char*, const char*> cases[] = {

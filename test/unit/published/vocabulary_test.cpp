@@ -1,11 +1,11 @@
-// The words of published equations: quantities, derivatives, eliminations, definitions, vectors, and what is said of
+// The words of published equations: quantities, derivatives, eliminations, definitions, vectors, and the messages on
 // wrong ones.
 #include "support/published.h"
 
 namespace anholon::vocabulary_test {
 namespace {
 
-// A rocket on a plane that turns with an unknown angle; a blade; the names C and Q are the model's own.
+// A rocket on a plane that turns with an unknown angle; a blade; the model defines the names C and Q itself.
 const char* const kRocket = R"toml(coordinates = ["x", "y", "th"]
 parameters = {M = 3, J = 2, u = 2, Q = 5}
 [functions]
@@ -32,7 +32,7 @@ expelled_velocity = "-u*blade.x"
 name = "edge"
 equation = "y' = x'*tan(th)"
 )toml";
-// A bounded speed is not solved as a formula.
+// The constraint of a bounded speed is not solved as a formula.
 const char* const kSpeed = R"toml(coordinates = ["r", "psi"]
 parameters = {c = 2, k = 3}
 [functions]
@@ -66,7 +66,7 @@ u2 = "y' + x*x'"
 class Words : public test::Published {
  public:
   using Published::Published;
-  // "true", "false" or "unknown" of the last equation of the text.
+  // The verdict on the last equation of the text: "true", "false" or "unknown".
   std::string verdict(const std::string& text) {
     const auto list = read(text + "\n");
     if (list.empty()) return "not read";
@@ -138,7 +138,7 @@ TEST(Vocabulary, ConstraintsThatAreNotSolved) {
   EXPECT_EQ(w.verdict("e: partial(reduced(T_r), " + x + ") = partial(T_r, " + x + ") + partial(T_r, " + y +
                       "')*partial(f." + y + ", " + x + ")"),
             "true");
-  // A sum with something else in it has no derivative along the manifold that could be told from an ordinary one.
+  // A sum with another term has no derivative along the manifold that differs visibly from an ordinary one.
   EXPECT_EQ(w.error("e: partial(reduced(T_r) + " + x + "', " + x + "') = 0")
                 .find("the constraints are not solved as formulas here"),
             0U);
@@ -163,7 +163,7 @@ TEST(Vocabulary, QuasiVelocities) {
             "what is differentiated by a quasi-velocity is not expressed in quasi-velocities");
 }
 
-// The names that derive prints for the polynomials of a table.
+// The names that `derive` prints for the polynomials of a table.
 TEST(Vocabulary, PiecesOfTables) {
   Words w(R"toml(coordinates = ["x"]
 parameters = {m = 2}

@@ -1,4 +1,4 @@
-// What a page keeps of a run.
+// The numbers of a run that a page keeps.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(Packed, HoldsTheBitsOfTheNumbers) {
   EXPECT_EQ(packed({0, 0, 0}), std::string(32, 'A'));
 }
 
-// The mass doubles at an event: the kinetic energy of the rows after it is that of the new mass.
+// The mass doubles at an event: the kinetic energy of the later rows is that of the new mass.
 TEST(Plots, KnowWhatEventsHaveSet) {
   Scenario prepared;
   ASSERT_TRUE(
@@ -63,11 +63,11 @@ TEST(Plots, KnowWhatEventsHaveSet) {
   EXPECT_EQ(kinetic(), (std::vector<double>{2, 2, 2, 2, 2}));
   run.report =
       R"({"outcome": "finished", "events": [{"name": "catch", "t": 0.5, "set": {"n": {"before": 1, "after": 2}}}]})";
-  // At the event there is a row before it and one after it.
+  // An event has a row before it and one after it.
   EXPECT_EQ(kinetic(), (std::vector<double>{2, 2, 2, 4, 4, 4}));
 }
 
-// The frame of a table that turns at a constant rate, and one whose origin goes in a circle.
+// The frame of a table that turns at a constant rate, and a frame whose origin moves in a circle.
 TEST(ObserverPath, TurnsAsTheSpinSays) {
   const auto model = test::shipped("zoo/ball-on-turntable-rotating");  // spin 3 about z
   const std::vector<double> parameters = parameter_values<double>(*model);

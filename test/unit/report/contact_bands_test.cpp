@@ -39,7 +39,8 @@ EventReport event(const std::string& name, double t) {
 }
 
 TEST(ContactBands, ChangeAtTheEventsBetweenRows) {
-  // It slips from 0.2 to 0.7 and from 1.4 on, against which the row at 2 says that it sticks until an impact at 1.9.
+  // The contact slips from 0.2 to 0.7 and from 1.4 on. The row at 2 says that it sticks, so it slips up to the impact
+  // at 1.9.
   const std::vector<ContactBand> bands =
       contact_bands(table(), {event("belt.slips", 0.2), event("belt.sticks", 0.7), event("belts.slips", 0.8),
                               event("belt.slips", 1.4), event("belt.hits", 1.9)});

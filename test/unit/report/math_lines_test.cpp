@@ -1,4 +1,4 @@
-// Formulas that wrap say the same as those that do not.
+// Formulas that wrap have the same signs as those that do not.
 #include <gtest/gtest.h>
 
 #include "mechanics/mechanics.h"
@@ -9,7 +9,7 @@
 namespace anholon::math_lines_test {
 namespace {
 
-// What is left to read when tags are taken away.
+// The text without its tags.
 std::string signs(const std::string& s) {
   std::string out;
   bool tag = false;
@@ -39,7 +39,7 @@ TEST(MathLines, OnlyLongBracketsAreOpened) {
   std::string longer = inner;
   for (int k = 0; k < 12; ++k) longer += "<mo>+</mo><mi>z</mi>";
   EXPECT_EQ(math_pieces("<mi>a</mi><mrow><mo>(</mo>" + longer + "<mo>)</mo></mrow>").size(), 14U);
-  // Roots stay whole, and fractions with a short numerator.
+  // Roots stay whole, as do fractions with a short numerator.
   EXPECT_EQ(math_pieces("<msqrt>" + longer + "</msqrt>").size(), 1U);
   EXPECT_EQ(math_pieces("<mfrac><mrow>" + inner + "</mrow><mrow><mi>c</mi></mrow></mfrac>").size(), 1U);
 }
@@ -68,7 +68,7 @@ TEST(MathLines, NothingOfAnEquationIsLostOnAnyShippedModel) {
     for (const Column* column : {&m.Q, &m.Gamma, &m.phi})
       for (const Expr& e : put_masses(*model, *column)) {
         const std::string row = print(e, model->names, Format::mathml);
-        if (row.find("<mfrac>") != std::string::npos) continue;  // the test above
+        if (row.find("<mfrac>") != std::string::npos) continue;  // tested above
         ++asked;
         std::string together;
         for (const std::string& p : math_pieces(row)) together += p;

@@ -1,4 +1,4 @@
-// What a page computes before its motion can be shown.
+// The computations of a page before its motion can be shown.
 #include <gtest/gtest.h>
 
 #include "expr/expr.h"
@@ -8,7 +8,8 @@
 namespace anholon::page_parts_test {
 namespace {
 
-// Integrability is what `anholon check` tells. Of a bicycle it takes most of the time of a page, and no section shows it.
+// `anholon check` reports integrability. For a bicycle it would take most of the time of a page, and no section shows
+// it.
 TEST(PageInParts, DecidesNoIntegrability) {
   const std::shared_ptr<const Model> model = test::shipped("zoo/whipple");
   Scenario scenario;

@@ -1,5 +1,5 @@
-// The rows of a page: its own where the motion is computed for it, in pairs at jumps, and so many that the animation is
-// right between them.
+// The rows of a page: its own rows if the motion is computed for it, pairs of rows at jumps, and enough rows that the
+// animation is right between them.
 #include <cmath>
 #include <numbers>
 
@@ -69,7 +69,7 @@ TEST(PictureRows, LieInEachStepAndOnBothSidesOfAnEvent) {
   EXPECT_GE(table.rows(), 4 * run.steps.size());
 }
 
-// Free fall is a polynomial of degree 2: what is continued to the event by derivatives is exact.
+// Free fall is a polynomial of degree 2, so its continuation to the event by derivatives is exact.
 TEST(RowsForPage, ContinueRowsToTheEventBetweenThem) {
   const Scenario s = scenario_of(kBall);
   SimulationOptions options;
@@ -91,7 +91,8 @@ TEST(RowsForPage, ContinueRowsToTheEventBetweenThem) {
   EXPECT_NEAR(speed[5], 5, 1e-10);
 }
 
-// The row of the event is the one before it; a second event, before the next row, leaves the velocity between them open.
+// The row at the event repeats the row before it. A second event before the next row leaves the velocity between the
+// events unknown.
 TEST(RowsForPage, KnowWhatNoRowTells) {
   const Scenario s = scenario_of(kBall);
   RunTable table = table_of(sine, 3, 1);
@@ -157,12 +158,12 @@ TEST(Frames, TellWhereRowsAreTooFarApart) {
     const RunTable table = table_of(sine, 200, step);
     EXPECT_EQ(doubtful_intervals(table.values[0], moving(table)), 0U) << step;
   }
-  // As 1.46 s are to 0.714 s.
+  // The rows are 2.045 periods apart, as are 1.46 s with a period of 0.714 s.
   const RunTable table = table_of(sine, 200, 2 * std::numbers::pi * 2.045);
   EXPECT_GT(doubtful_intervals(table.values[0], moving(table)), 150U);
 }
 
-// Beside a column that moves, the round-off of one that rests is no motion.
+// The round-off of a column at rest is no motion beside a column that moves.
 TEST(Frames, TakeRoundOffForNoMotion) {
   RunTable table = table_of(sine, 300, 0.1);
   const RunTable noise =

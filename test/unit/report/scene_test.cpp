@@ -1,4 +1,4 @@
-// The picture of a model: what is drawn, and that its program places it where the model says.
+// The picture of a model: its items, and that its program places them as the model does.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ ColumnOf jets_in_a_row(std::size_t n) {
   };
 }
 
-// A second reading of the program that the page carries, by the words of the contract alone.
+// Runs the program of the page, written a second time from the description of its operations alone.
 std::vector<double> run(const Json& scene, const std::vector<double>& row, double t) {
   std::vector<double> v;
   for (const Json& e : scene["code"]) {

@@ -124,7 +124,7 @@ TEST_F(File, ALinkStaysOne) {
   EXPECT_EQ(files(), 2u);
 }
 
-// A part that somebody else has laid there as a link is not followed.
+// A link that somebody else has put at the name of the part is not followed.
 TEST_F(File, FollowsNoLinkForItsPart) {
   const fs::path victim = folder_ / "victim";
   std::ofstream(victim) << "precious";

@@ -1,4 +1,4 @@
-// Results in HDF5: what was written is read, and the file that has a name is whole at every moment.
+// Results in HDF5: written data are read back, and the file under its final name is complete at every moment.
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -57,7 +57,7 @@ class Hdf5 : public ::testing::Test {
     i.units = {{"x", "m"}};
     return i;
   }
-  // The file of a run of so many rows.
+  // The bytes of the file of a run with `rows` rows.
   std::string bytes_of_a_run(int rows) const {
     Hdf5Sink sink(path_, info());
     test::set_columns(sink, {"t", "x"});
@@ -110,7 +110,7 @@ TEST_F(Hdf5, EverythingComesBack) {
   EXPECT_FALSE(fs::exists(path_ + ".part"));
 }
 
-// Texts may begin in any column at any row; what came before has none.
+// Texts may begin in any column at any row; earlier rows have none.
 TEST_F(Hdf5, TextsOfSeveralColumns) {
   Hdf5Sink sink(path_, info());
   test::set_columns(sink, {"a", "b", "c"});
@@ -135,14 +135,14 @@ TEST_F(Hdf5, IsThereFromTheBeginning) {
   EXPECT_EQ(run.table.rows(), 0u);
   EXPECT_EQ(run.model.at(0).name, "disc.toml");
   EXPECT_TRUE(run.report.empty());
-  // Between checkpoints nothing is seen, and nothing has to be.
+  // Between checkpoints new rows are not visible.
   test::add_row(sink, {"1"});
   EXPECT_EQ(read_run(path_).table.rows(), 0u);
   sink.flush();
   EXPECT_EQ(read_run(path_).table.rows(), 1u);
 }
 
-// A reader that has opened the file, and one that removes it, do not disturb the run.
+// A run is not disturbed by a reader that has opened its file, or by a process that removes it.
 TEST_F(Hdf5, GoesOnWhereItsFileWasTakenAway) {
   Hdf5Sink sink(path_, info());
   test::set_columns(sink, {"t"});
@@ -175,7 +175,7 @@ TEST_F(Hdf5, CheckpointsComeByTimeAndByBytes) {
   EXPECT_EQ(by_time.written(), 1u);
 }
 
-// Many rows go to the copy before the checkpoint: the complete file does not have them yet, the last one has all.
+// Many rows go to the copy before the checkpoint: the complete file does not have them yet, the final one has all.
 TEST_F(Hdf5, TheCopyGetsRowsAheadOfTheCheckpoint) {
   constexpr int kRows = 1'000'000;  // 16 MB
   CheckpointPace pace;
@@ -206,7 +206,7 @@ TEST_F(Hdf5, TheCopyGetsRowsAheadOfTheCheckpoint) {
   EXPECT_FALSE(fs::exists(path_ + ".part"));
 }
 
-// A process that writes without end is killed at random times: each time the file opens, with all rows up to some
+// A process that writes without end is killed at random times: each time the file opens, with all rows up to a
 // checkpoint.
 TEST_F(Hdf5, SurvivesKills) {
   unsigned random = 12345;
@@ -219,7 +219,7 @@ TEST_F(Hdf5, SurvivesKills) {
     if (child == 0) {
       CheckpointPace pace;
       pace.seconds = 0;
-      pace.share = 0;  // a checkpoint at every row: most of the time it is in the middle of one
+      pace.share = 0;  // a checkpoint at every row, so that most kills fall into one
       Hdf5Sink sink(path_, info(), pace);
       test::set_columns(sink, {"t", "x"});
       for (std::uint64_t i = 0;; ++i) {
@@ -229,7 +229,7 @@ TEST_F(Hdf5, SurvivesKills) {
       }
     }
     close(reports[1]);
-    // Not before the first row is there.
+    // The kill comes after the first row.
     std::uint64_t written = 0, next = 0;
     ASSERT_EQ(read(reports[0], &written, sizeof written), static_cast<ssize_t>(sizeof written));
     random = random * 1103515245u + 12345u;
@@ -256,7 +256,7 @@ TEST_F(Hdf5, SurvivesKills) {
   EXPECT_GT(grown, 20u);
 }
 
-// A disk that is full: what was complete stays, the reason is told, nothing else lies about.
+// On a full disk the last complete file stays, the reason is reported, and no other file is left.
 TEST_F(Hdf5, FullDiskLeavesTheLastFile) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);
@@ -288,7 +288,7 @@ TEST_F(Hdf5, SaysWhereItCannotWrite) {
             "cannot write " + (folder_ / "no" / "run.h5").string() + ": No such file or directory");
 }
 
-// Damage is an error with a message, never a crash.
+// A damaged file gives an error with a message, never a crash.
 TEST_F(Hdf5, DamagedFilesAreRefused) {
   const std::string bytes = bytes_of_a_run(300);
   std::size_t refused = 0;
@@ -300,7 +300,7 @@ TEST_F(Hdf5, DamagedFilesAreRefused) {
   EXPECT_GT(refused, 30u);
 }
 
-// The library itself follows what stands in the file.
+// The bytes may mislead the HDF5 library itself.
 TEST_F(Hdf5, FlippedBytesAreNoCrash) {
   const std::string bytes = bytes_of_a_run(10);
   unsigned random = 1;

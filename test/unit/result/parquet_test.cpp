@@ -70,7 +70,7 @@ TEST(Parquet, TellsItsEnd) {
   EXPECT_EQ(end.notes[0].second, "17");
 }
 
-// Whatever byte is changed or missing, the file is refused or says the same: no read passes its end.
+// Whichever byte is changed or missing, the file is refused or has the same content, and no read passes its end.
 TEST(Parquet, RefusesWhatIsDamaged) {
   const ParquetTable t = table_of(20);
   const std::string bytes = parquet_bytes(t);
@@ -114,7 +114,7 @@ TEST(Thrift, GivesBackWhatWasWritten) {
 
 TEST(Parquet, ReadsBlocksOfSnappy) {
   std::string bytes;
-  // A length, literals, and copies that overlap what they copy.
+  // A length, literals, and copies that overlap their source.
   EXPECT_TRUE(parquet::read_snappy(std::string_view("\x05\x10hello", 7), 5, bytes));
   EXPECT_EQ(bytes, "hello");
   EXPECT_TRUE(parquet::read_snappy(std::string_view("\x0a\x00"

@@ -24,7 +24,8 @@ std::string theirs(double x) {
 }
 
 TEST(Shortest, IsToCharsWhereNumbersChangeTheirForm) {
-  // Around powers of two, where the number below is half as far, and of ten, where the notation changes.
+  // Numbers around powers of two, whose lower neighbour is half as far, and around powers of ten, where the notation
+  // changes.
   for (int e = -1074; e < 1024; ++e)
     for (const double power : {std::ldexp(1.0, e), std::pow(10.0, e / 3)}) {
       double below = power, above = power;
@@ -40,7 +41,7 @@ TEST(Shortest, IsToCharsWhereNumbersChangeTheirForm) {
     EXPECT_EQ(ours(x), theirs(x));
 }
 
-// Numbers of all exponents, of few digits, whole ones, and those of rows.
+// Numbers of all exponents, with few digits, whole numbers, and numbers of rows.
 TEST(Shortest, IsToCharsForRandomNumbers) {
   const long rounds = std::getenv("ANHOLON_LONG") ? 20'000'000 : 200'000;
   std::mt19937_64 random(1);

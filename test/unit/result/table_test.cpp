@@ -94,7 +94,7 @@ TEST(Csv, AColumnOfWordsMayBeginEmpty) {
   EXPECT_EQ(trouble("case,x\n0,1\n1,\n2,far\n"), "4:3: 'far' is not a number");
 }
 
-// What a kill leaves of a row is no row.
+// The rest of a row that a kill leaves is no row.
 TEST(Csv, TheRestOfAKilledRun) {
   const RunFile run = read_csv("t,x,y\n0,1,2\n0.5,1.2");
   EXPECT_EQ(run.table.rows(), 1u);

@@ -15,7 +15,7 @@ std::string kind_of(const std::string& equation) {
   return classify(mechanics(*model)).front().kind;
 }
 
-// Signs and choices of velocities have no derivatives, and are not constant for all that.
+// Signs and choices of velocities have no derivatives, but are not constant.
 TEST(Classes, OfConstraintsWithStepsOfVelocities) {
   for (const char* equation :
        {"x' = piecewise(y' > 0.2, z', y')", "abs(x') = y'", "x' = sign(y')*z'", "x' = max(y', 2*z')"})

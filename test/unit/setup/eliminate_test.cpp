@@ -8,7 +8,7 @@
 namespace anholon::eliminate_test {
 namespace {
 
-// The accelerations decide which pivot is regular: x'' = 0 on the branch that is chosen.
+// The accelerations decide which pivot is regular: on the chosen branch x'' = 0.
 const std::string kModel = R"toml(coordinates = ["x", "y"]
 parameters = {g = 9.81, a = 12}
 particle = [{name = "p", mass = 2, position = "x*ex + y*ey"}]

@@ -9,7 +9,7 @@
 namespace anholon::large_angles_test {
 namespace {
 
-// A pendulum with a bead that slides along a wave, and a wheel that has rolled.
+// A pendulum, a bead that slides along a wave, and a wheel that has rolled.
 const std::string kModel = R"toml(coordinates = ["theta", "x", "s", "phi"]
 parameters = {m = 1, l = 1}
 frame.wheel = "rotz(phi)"
@@ -100,7 +100,7 @@ field = "-9.81*ey"
   EXPECT_NE(note(test::replaced(chain, "45 rad", "45")), "");
 }
 
-// The state of such a start clashes with the constraints, and the note may tell the reason.
+// Such a start contradicts the constraints, and the note may give the reason.
 TEST(LargeAngles, AreAmongTheNotesOfAStartThatFails) {
   const std::string text = test::replaced(with_theta("45"), "s' = l*phi'", "theta = 1");
   Scenario s;

@@ -9,7 +9,7 @@
 namespace anholon::workspace_test {
 namespace {
 
-// The handles of a scenario that are of this graph, and of any other.
+// The numbers of a scenario's handles that belong to this graph, and to any other.
 std::pair<std::size_t, std::size_t> handles(Scenario& s, const Graph* of) {
   std::pair<std::size_t, std::size_t> count;
   for_each_expression(s, [&](Expr& e) {
@@ -61,7 +61,7 @@ TEST(Workspace, OfAFormThatEliminates) {
     EXPECT_EQ(handles(own, &own.graph()).second, 0U) << form;
     ASSERT_FALSE(own.elimination.free.u.empty());
     EXPECT_EQ(own.elimination.free.u[0].graph, &own.graph());
-    // It goes on to eliminate in its own graph.
+    // The workspace eliminates in its own graph.
     EXPECT_EQ(own.elimination.rate(own.elimination.g())[0].graph, &own.graph());
     Workspace again(own);
     EXPECT_EQ(handles(again, &again.graph()).second, 0U) << form;
@@ -88,7 +88,7 @@ TEST(Workspace, TheGivenModelIsThatBeforeItsEquations) {
   EXPECT_EQ(p.scenario.given_nodes, p.model->graph->size()) << "the model given was left as it is";
   const auto given = given_model(p.scenario);
   EXPECT_EQ(given->graph->size(), p.model->graph->size());
-  // What is derived from it has the ids of what was derived before.
+  // A further derivation from the model has the ids of the first one.
   Scenario again;
   ASSERT_TRUE(make_scenario(given, *find_formulation("routh"), {}, again).ok());
   EXPECT_EQ(again.system.equations, p.scenario.system.equations);

@@ -18,7 +18,7 @@ TEST(Chain, OfThirtyTwoLinksKeepsItsEnergyAndNewtonsLaw) {
   const SimulationReport r = simulate(s, options, sink);
   ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
   EXPECT_EQ(sink.rows().size(), 3U);
-  // Forces of the whole chain hang on the first link: a thousand round-offs.
+  // The first link carries the forces of the whole chain: a thousand round-offs.
   EXPECT_LE(r.newton, 1e-12);
   EXPECT_LE(r.power, 1e-12);
   EXPECT_GT(r.smallest_sigma, 0);

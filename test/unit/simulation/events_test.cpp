@@ -1,4 +1,4 @@
-// Events, states, kinks and servo constraints against closed forms.
+// Events, states, kinks and servo constraints, compared with closed forms.
 #include <cmath>
 #include <sstream>
 
@@ -33,7 +33,8 @@ std::string mass_on_a_line(const std::string& force, const std::string& more) {
          ")*ex\"\n";
 }
 
-// Kinks that the time alone decides are met at their times: forces that jump there leave no error of the tolerance.
+// Kinks that depend on time alone are met at their times: forces that jump there add no error of the size of the
+// tolerance.
 TEST(Events, KinksInTimeAlone) {
   const std::string table = "table = [{name = \"h\", x = [0, 0.3, 0.7], y = [0, 1, 5], fit = \"hold\"}]\n";
   struct Case {
@@ -54,8 +55,8 @@ TEST(Events, KinksInTimeAlone) {
   EXPECT_EQ(exact.number(1, "t"), 1);
 }
 
-// A step that ends at the double next to a knot, as at an event, goes on beyond the knot: 0.7 is less as a double than as a
-// state keeps it.
+// A step that ends at the double next to a knot, as at an event, continues beyond the knot: 0.7 as a double is less
+// than 0.7 as the state holds it.
 TEST(Events, AtAKnot) {
   const std::string more = "table = [{name = \"h\", x = [0, 0.3, 0.7], y = [0, 1, 5], fit = \"hold\"}]\nmode.m = 0\n"
                            "event = [{name = \"e\", when = \"t - 0.7\", set = {m = 1}}]\n";
@@ -70,7 +71,7 @@ TEST(Events, AtAKnot) {
 }
 
 TEST(Events, TwoThatAreNearlyAtOnce) {
-  // The second ball arrives 3e-12 after the first one has bounced: not at the same moment, and not never.
+  // The second ball arrives 3e-12 after the first one has bounced: its event comes later, and is not lost.
   const std::string text = R"(coordinates = ["x", "y"]
 particle = [{name = "a", mass = 1, position = "x*ex"}, {name = "b", mass = 1, position = "y*ey"}]
 event = [
@@ -95,9 +96,8 @@ TEST(Events, AKinkInTheirFormula) {
   EXPECT_NEAR(r.report.events[0].t.value, 3.5, 1e-14);
 }
 
-// x = 3 cos 2t: squares of a series converge more slowly than the series.
-// What the series of a formula does not show, or cannot: it has none where the motion starts, it is all but constant
-// there, or its power is too high.
+// The events are found although the series of a formula does not show them: the formula has no series at the start of
+// the motion, is nearly constant there, or has too high a power.
 TEST(Events, AreFoundWhateverTheirFormula) {
   const auto moving = [](const std::string& when, const char* x = "0") {
     return mass_on_a_line("0", "[initial]\nx = " + std::string(x) +
@@ -123,7 +123,7 @@ TEST(Events, AreFoundWhateverTheirFormula) {
 }
 
 TEST(Events, WithoutAnySeriesHoldNobodyUp) {
-  // Of what is at rest; of what has no value, which ends the motion at once.
+  // The formula is at rest, or has no value, which ends the motion at once.
   for (const char* when : {"sqrt(y) - 1", "norm(y*ey) - 1", "log(y) - 1", "1/y - 1", "log(x - 0.1)"}) {
     const Result r = run("coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + "
                          "y*ey\"}]\nevent = [{name = \"e\", when = \"" +
@@ -140,7 +140,7 @@ TEST(Events, WithoutAnySeriesHoldNobodyUp) {
   }
 }
 
-// In all kinds of numbers a motion that ends for an event alone names the event, and no other one.
+// In all types of numbers, a motion that ends because of an event's formula names this event and no other.
 TEST(Events, ThatEndAMotionAreNamed) {
   for (const Precision precision : {Precision::real, Precision::long_real, Precision::quad, Precision::multi})
     for (const char* when : {"1/(x - 0.55)", "tan(3*x)", "log(0.55 - x)"}) {
@@ -181,8 +181,8 @@ TEST(Events, AreAtTheZeroOfTheFormula) {
   EXPECT_NEAR(r.report.events[0].t.value, std::acos(1.0 / 3) / 2, 1e-11);
 }
 
-// One step from bounce to bounce, longer than its terms: far from where it begins they cancel to more than their
-// round-off there.
+// One step from bounce to bounce is so long that its terms cancel far from its start, to more than their round-off
+// there.
 TEST(Events, KeepTheirDirectionFarFromTheExpansion) {
   const Result r = run(mass_on_a_line("-1.98", R"(event = [
   {name = "above", when = "x^2 - 1.13^2", direction = "up"},
@@ -214,7 +214,7 @@ TEST(Events, EnergyIsBalancedOverThem) {
   EXPECT_LT(r.report.power, 1e-12);
 }
 
-// Two pendulums, one on the other. It is the kernel that makes nearly all steps.
+// Two pendulums, one on the other. The kernel makes nearly all steps.
 constexpr const char* kSwings = "coordinates = [\"a\", \"b\"]\npoint.P = \"sin(a)*ex - cos(a)*ey\"\n"
                                 "gravity.field = \"-9.81*ey\"\n"
                                 "particle = [{name = \"p\", mass = 1, position = \"P\"}, {name = \"q\", mass = 2, "
@@ -222,7 +222,7 @@ constexpr const char* kSwings = "coordinates = [\"a\", \"b\"]\npoint.P = \"sin(a
                                 "event = [{name = \"low\", when = \"sin(a) + sin(b)\"}, {name = \"turns\", when = "
                                 "\"a'\", set = {\"b'\" = \"b'/2\"}}]\n";
 
-// A ball in a wind, which bounces; `counted`: by a mode, so that the equations change.
+// A ball that bounces in a wind; if `counted`, a mode counts the bounces, so that the equations change.
 std::string bouncing(bool counted) {
   const std::string mode = counted ? "mode.n = 0\n" : "", set = counted ? ", n = \"n + 1\"" : "";
   return mass_on_a_line("-10 - x'/5", "initial = {x = 2}\n" + mode + "state.z = {rate = \"x - " +
@@ -283,7 +283,7 @@ TEST(Events, SetModesThatTheRowsAfterThemHave) {
   EXPECT_TRUE(r.report.warnings.empty()) << r.report.warnings.front().message;
   for (const std::vector<std::string>& row : r.rows.rows()) {
     const double t = std::stod(row[0]), x = std::stod(row[1]), acceleration = std::stod(row[3]);
-    if (std::abs(t - 1) < 1e-9 || std::abs(t - 3) < 1e-9) continue;  // the moments of the events, to round-off
+    if (std::abs(t - 1) < 1e-9 || std::abs(t - 3) < 1e-9) continue;  // the times of the events, to round-off
     EXPECT_NEAR(acceleration, t < 1 || t > 3 ? 2 : -2, 1e-14) << t;
     const double since = t < 1 ? t : t < 3 ? t - 2 : t - 4;
     EXPECT_NEAR(x, t < 1 || t > 3 ? since * since : 2 - since * since, 1e-14) << t;
@@ -292,8 +292,8 @@ TEST(Events, SetModesThatTheRowsAfterThemHave) {
   EXPECT_GE(r.report.error->worst().digits, 14);
 }
 
-// A row that is asked for at the time of an event shows the motion before it, whether the time is below or above that of the
-// event as a double.
+// A row at the time of an event shows the motion before it, whether this time as a double is below or above that of the
+// event.
 TEST(Events, RowsAtTheirTimeShowTheMotionBefore) {
   for (const char* time : {"1/10", "1/5", "3/10", "3/5", "7/10", "9/10", "1/3"}) {
     const Result r = run(mass_on_a_line("0", "event = [{name = \"kick\", when = \"t - " + std::string(time) +
@@ -305,7 +305,8 @@ TEST(Events, RowsAtTheirTimeShowTheMotionBefore) {
   }
 }
 
-// Positions that an event sets beside a circle go to the nearest ones on it, and velocities to their tangents, in all forms.
+// Positions that an event sets beside a circle move to the nearest ones on it, and velocities to its tangents, in all
+// forms.
 TEST(Events, PositionsAreMadeConsistentByTheLeastChange) {
   const std::string text = R"toml(
 coordinates = ["x", "y"]
@@ -326,8 +327,8 @@ initial = {x = 1, y = 0, "y'" = 1}
   EXPECT_GT(misfit("0.2001", "routh"), 1e-6);  // the mutant
 }
 
-// A velocity that an event sets against a constraint: the impulse of the constraint shares it by the masses, in all forms.
-// With a velocity constraint beside it, positions follow the constraints of position alone.
+// An event sets a velocity against a constraint: the impulse of the constraint distributes it by the masses, in all
+// forms. With a velocity constraint beside it, positions follow only the constraints of position.
 TEST(Events, VelocitiesAreMadeConsistentInTheMassNorm) {
   const std::string text = R"toml(
 coordinates = ["x", "y", "z"]
@@ -366,7 +367,7 @@ set = {x = "x + 1"}
   EXPECT_GT(std::abs(mutant.last("x'") - 0.2), 1e-2);
 }
 
-// With modes, each of which begins with a stepper of its own.
+// The kernel makes most steps, also with modes, each of which begins with a new stepper.
 TEST(Events, LeaveTheStepsToTheKernel) {
   std::string counted = kSwings;
   counted.replace(counted.find("b'/2"), 5, "b'/2\", n = \"n + 1\"");
@@ -404,7 +405,7 @@ state = {fuel = {rate = "-2", initial = 9}, lag = {rate = "(1 - lag)/2", initial
   EXPECT_NEAR(r.last("fuel"), 1, 1e-13);
 }
 
-// x'' = -sign(x), -2 x beyond 1, a table: the error falls with the tolerance, and the closed form is met.
+// Forces -sign(x), -2 x beyond 1, and a table: the error falls with the tolerance, and the closed form is met.
 TEST(Kinks, TheErrorFollowsTheTolerance) {
   struct Case {
     const char* force;
@@ -429,8 +430,7 @@ TEST(Kinks, TheErrorFollowsTheTolerance) {
   }
 }
 
-// A tether that is reeled out: the pull along it is an ideal reaction, a thrust sideways is none.
-// A pendulum with drag, driven by forces that have kinks on the way: its own ones, and those of time.
+// A pendulum with drag, driven by forces that have kinks on the way, in its motion and in time.
 std::string driven(const std::string& force) {
   return R"(coordinates = ["a"]
 table = [
@@ -467,7 +467,8 @@ TEST(Kinks, AreThoseOfTheReferenceIfAKernelMakesTheSteps) {
   }
 }
 
-// A table ends at the height of a floor: what bounces there stays within, what goes on does not.
+// A table ends at the height of a floor: a ball that bounces there stays within the table, one that continues leaves
+// it.
 TEST(Bounds, AMotionMayTurnBackWhereATableEnds) {
   const auto falls = [](const std::string& floor) {
     return run(R"(coordinates = ["x", "z"]
@@ -489,7 +490,7 @@ initial = {z = 0.5}
       << on.report.outcome.message;
 }
 
-// From a knot at which a table ends a motion may go inwards alone.
+// From a knot at which a table ends a motion may only go inwards.
 TEST(Bounds, AMotionThatStartsWhereATableEndsAndLeavesItEnds) {
   const auto from = [](const std::string& x, const std::string& event, const Rational& to) {
     return run(R"(coordinates = ["x"]
@@ -515,8 +516,8 @@ initial = {x = )" + x +
   EXPECT_EQ(from("0.5", beyond, Rational(1, 10)).kind, OutcomeKind::not_a_number);
 }
 
-// A potential with a step, a position with a kink, a constraint whose velocity jumps: the motion goes on without the impulse that
-// this needs, and has a warning. A force that jumps has none.
+// A potential with a step, a position with a kink, a constraint whose velocity jumps: the motion continues without the
+// impulse that each of them needs, and has a warning. A force that jumps has none.
 TEST(Kinks, ThatWouldNeedAnImpulseHaveAWarning) {
   const auto warnings = [](const std::string& text) {
     Result r;
@@ -563,8 +564,8 @@ force = [{on = "p", vector = "atan2(sin(t), cos(t))*ex"}]
   }
 }
 
-// From rest at the height of a kink z = 1 - t^2/2: what acts along x is known on the side to which the motion goes, and the
-// height leaves that of the kink by less than it resolves for a time.
+// A motion starts at rest at the height of a kink, z = 1 - t^2/2. The force along x is that of the side to which the
+// motion goes, and for a time the height differs from that of the kink by less than its resolution.
 TEST(Kinks, OfAMotionAtRestAreLeft) {
   for (const auto& [force, x] : {std::pair{"lines(z)", 1 - 1 / 12.0},
                                  {"abs(z - 1)", 1 / 24.0},
@@ -606,6 +607,7 @@ TEST(Kinks, LeaveTheStepsToTheKernel) {
   }
 }
 
+// A tether is reeled out: the pull along it equals an ideal reaction, a thrust sideways does not.
 TEST(Servo, IsTheIdealReactionWhereItActsAlongIt) {
   const auto tether = [](const std::string& force, const std::string& by) {
     return run(R"(coordinates = ["x", "y"]

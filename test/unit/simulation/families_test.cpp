@@ -1,4 +1,4 @@
-// Families against the same systems written out by hand, and against numbers from elsewhere.
+// Families are compared with the same systems written out by hand, and with published numbers.
 #include <gtest/gtest.h>
 
 #include "observe/evaluate.h"
@@ -15,7 +15,7 @@ std::string plain(std::string name) {
   return name;
 }
 
-// Accelerations and multipliers at the start, by name; th[1]'' as th1''.
+// Accelerations and multipliers at the start by name, in which th[1]'' is th1''.
 std::map<std::string, double> motion_of(const std::shared_ptr<const Model>& model,
                                         const std::map<std::string, Rational>& start = {}) {
   StateChoice choice;
@@ -79,7 +79,7 @@ TEST(Families, TheChainIsTheChainWrittenOut) {
 TEST(Families, TheChainSwingsInLaguerresModes) {
   constexpr int n = 4;
   const Rational small(1, 100'000'000);
-  constexpr double kCubic = 1e-10;  // what sin x and cos x leave out
+  constexpr double kCubic = 1e-10;  // the higher terms of sin x and cos x
   for (const char* zero : {"0.322547689619392", "1.745761101158347", "4.536620296921128", "9.395070912301133"}) {
     const Rational k = parse_rational(zero).value();
     std::vector<Rational> l = {1, 1 - k};

@@ -1,4 +1,4 @@
-// Rows of a kernel: their numbers are those of row_values(), and numbers that are not those of the reference are found.
+// Rows of a kernel have the numbers of row_values(), and numbers that differ from the reference are found.
 #include <gtest/gtest.h>
 
 #include "simulation/kernel_rows.h"
@@ -8,7 +8,8 @@
 namespace anholon::kernel_rows_test {
 namespace {
 
-// A motion of a shipped model with all that takes its rows. `wrong`: the kernel of the rows has another value of g.
+// A motion of a shipped model with all receivers of its rows. If `wrong`, the kernel of the rows has another value of
+// g.
 struct Rows {
   explicit Rows(const std::string& model, bool wrong = false) {
     EXPECT_TRUE(
@@ -91,7 +92,7 @@ TEST(KernelRows, HaveTheNumbersOfRowValues) {
   }
 }
 
-// Every column is looked at: a change of each number by a part in a million is found, one of a few round-offs is not.
+// Every column is compared: a change of each number by a part in a million is found, one of a few round-offs is not.
 TEST(RowCheck, FindsEveryWrongNumber) {
   Rows r("zoo/disc");
   const auto columns = columns_after_time(*r.s, 2);
@@ -110,7 +111,7 @@ TEST(RowCheck, FindsEveryWrongNumber) {
       if (found) {
         EXPECT_EQ(found->column, columns[j].name);
       }
-      // Of what the round-off of the state makes, it is one that may be.
+      // A change within the effect of the state's round-off is accepted.
       RowCheck uncertain(columns);
       std::vector<double> of_state(columns.size(), 0.0);
       of_state[j] = 1e-7;
@@ -121,7 +122,7 @@ TEST(RowCheck, FindsEveryWrongNumber) {
       uncertain.count(row, of_state);
       EXPECT_EQ(uncertain.found().has_value(), change > 1e-9);
     }
-  // What the reference itself loses by cancellation is no difference.
+  // Digits that the reference itself loses by cancellation are no difference.
   RowCheck check(columns);
   row.written = numbers;
   row.written.back() += 1e-6;
@@ -131,7 +132,7 @@ TEST(RowCheck, FindsEveryWrongNumber) {
   EXPECT_FALSE(check.found());
   row.written.back() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(check.doubts(row));
-  // A root whose argument is about 0 has a value or none by the round-off of the state.
+  // The round-off of the state decides whether a root whose argument is about 0 has a value.
   std::vector<double> of_state(columns.size(), 0.0);
   of_state.back() = std::numeric_limits<double>::infinity();
   check.count(row, of_state);

@@ -1,4 +1,4 @@
-// What is watched along a motion: monitors, integrals, singular values, angles.
+// Quantities that are watched along a motion: monitors, integrals, singular values, angles.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ speed2 = "norm2(vel(P.center))"
 jerk = "D(th,4)"
 )toml";
 
-// The range is that of the ends of all steps, whatever rows are asked for and whatever computes them.
+// The range is over the ends of all steps, for any requested rows and any method of computing them.
 TEST(Monitor, RangeDoesNotHangOnTheRows) {
   SimulationOptions o;
   o.to = 5;
@@ -60,7 +60,7 @@ TEST(Monitor, RangeDoesNotHangOnTheRows) {
       EXPECT_EQ(r.report.steps, reference.report.steps);
       for (std::size_t i = 0; i < r.report.monitors.size(); ++i) {
         const WatchedReport &w = r.report.monitors[i], &of = reference.report.monitors[i];
-        // The kernel and the reference that looks at rows differ in round-off.
+        // The kernel and the reference differ in round-off.
         const double round_off = 1e-12 * of.size;
         EXPECT_NEAR(w.least.value, of.least.value, round_off) << w.name;
         EXPECT_NEAR(w.greatest.value, of.greatest.value, round_off) << w.name;
@@ -70,7 +70,7 @@ TEST(Monitor, RangeDoesNotHangOnTheRows) {
     }
 }
 
-// The first steps, then ever fewer.
+// The first 1024 steps are all looked at, later ever fewer.
 TEST(Monitor, RangesOfLongMotionsAreSeenAtFewSteps) {
   std::size_t looks = 0;
   for (std::size_t step = 0; step < 1'000'000;) {
@@ -85,7 +85,7 @@ TEST(Monitor, RangesOfLongMotionsAreSeenAtFewSteps) {
   EXPECT_LT(looks, 10000U);
 }
 
-// What an event sets counts from the event on.
+// Values that an event sets count from the event on.
 TEST(Monitor, RangeHoldsBothSidesOfAnEvent) {
   SimulationOptions o;
   o.to = 2;
@@ -141,7 +141,7 @@ TEST(Monitor, MultipliersInEveryForm) {
   EXPECT_GT(std::abs(routh.number(2, "rate")), 1e-3);
 }
 
-// A disc that lies down: Euler's angles fail, and the warning says so; upright it rolls without one.
+// A disc lies down: Euler's angles fail, and the warning names them; an upright disc rolls without a warning.
 TEST(Angles, NearTheirSingularityAreWarnedOf) {
   const std::string disc = test::shipped_text("zoo/disc");
   const std::string top = R"toml(coordinates = ["psi", "theta", "phi"]
@@ -168,7 +168,7 @@ theta = 0.5
   for (const Warning& w : passes.report.warnings)
     angles = angles || w.message.find("the angles psi, theta, phi come near") == 0;
   EXPECT_TRUE(angles);
-  // From there the hint: a quaternion.
+  // The hint suggests a quaternion.
   EXPECT_NE(passes.report.warnings.back().hint.find("'top' by a quaternion"), std::string::npos);
 }
 
@@ -195,7 +195,7 @@ TEST(ConstraintsEach, HaveTheirDerivatives) {
     ASSERT_EQ(c.residuals.size(), 2U) << c.name;
     for (double x : c.residuals) EXPECT_LE(x, r.report.constraints_kept);
   }
-  // Constraints of order 2 have no derivative to hide.
+  // Constraints of order 2 have no hidden derivative.
   ASSERT_NO_FATAL_FAILURE(run(test::shipped_text("zoo/second-order-linear"), o, r));
   EXPECT_EQ(r.report.constraints_each.at(0).residuals.size(), 1U);
   EXPECT_LT(r.report.constraints_kept, 1e-15);

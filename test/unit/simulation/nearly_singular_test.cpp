@@ -1,5 +1,5 @@
-// Motions whose equations are nearly singular, or whose unknowns are of very different sizes: steps of Newton's
-// iteration for the leading derivatives do not shrink there, though the equations hold to round-off.
+// Motions whose equations are nearly singular, or whose unknowns have very different sizes: there the steps of Newton's
+// iteration for the leading derivatives do not shrink, though the equations hold to round-off.
 #include <cmath>
 #include <cstdlib>
 #include <regex>
@@ -29,7 +29,7 @@ Result run(const std::string& text, const Rational& to, Precision numbers = Prec
   return r;
 }
 
-// The model of the reference data, as its expressions are written there.
+// The model of the reference data, with its expressions as they are written there.
 std::string as_written(const nlohmann::json& data) {
   const auto formula = [](std::string text) {
     text = std::regex_replace(text, std::regex("\\*\\*"), "^");
@@ -57,8 +57,8 @@ std::string as_written(const nlohmann::json& data) {
   return text;
 }
 
-// Accelerations do not depend on the unit of mass: a sleigh of a micrometre and 1e-18 kg, or of a planet's mass, moves as one
-// of a metre and 1 kg, and its equations are as regular.
+// Accelerations do not depend on the unit of mass: a sleigh of a micrometre and 1e-18 kg, or with the mass of a planet,
+// moves as one of a metre and 1 kg, and its equations are as regular.
 TEST(Units, MassesOfAnySizeHaveOneMotion) {
   const auto sleigh = [](const std::string& mass, const std::string& length) {
     return "coordinates = [\"x\", \"y\", \"th\"]\nparameters = {M = " + mass + ", L = " + length + R"toml(}
@@ -79,7 +79,7 @@ initial = {x = "L", y = "L/2", th = 0.3, "x'" = "L", "th'" = 0.7}
     EXPECT_GT(other.report.smallest_sigma, 0.1) << mass;
     EXPECT_TRUE(other.report.warnings.empty()) << other.report.warnings.front().message;
   }
-  // The mutant: a coordinate that no mass follows.
+  // The mutant: no mass follows the coordinate y.
   Scenario s;
   EXPECT_EQ(make_scenario(test::model_of(test::replaced(sleigh("1e-18", "1"), "y*ey + 0.3*L*S.x", "0.3*L*ex")),
                           *find_formulation("routh"), {}, s)
@@ -88,8 +88,8 @@ initial = {x = "L", y = "L/2", th = 0.3, "x'" = "L", "th'" = 0.7}
             false);
 }
 
-// Euler's angles pass near theta = 0, where J has condition 1/theta^2. The shipped model has the same motion in other
-// words.
+// Euler's angles pass near theta = 0, where J has condition 1/theta^2. The shipped model writes the same motion in
+// other formulas.
 TEST(NearlySingular, ARattlebackAsItsFormulasAreWritten) {
   const nlohmann::json data = test::oracle_data("s07_rattleback"), &there = data["trajectory"];
   const std::string text = as_written(data);
@@ -114,8 +114,8 @@ TEST(NearlySingular, ARattlebackAsItsFormulasAreWritten) {
   }
 }
 
-// A disc that friction lays flatter and flatter: theta falls below 0.01, and J with theta^2. Steps of Newton's
-// iteration do not shrink from 2.4 s on.
+// Friction lays a disc ever flatter: theta falls below 0.01, and J with theta^2. From 2.4 s on, steps of Newton's
+// iteration do not shrink.
 TEST(NearlySingular, ADiscLaidFlatGoesOn) {
   const std::string disc = R"toml(coordinates = ["x", "y", "psi", "theta", "phi"]
 parameters = {m = 1, R = 0.1, g = 9.81, k = 0.005}
@@ -157,7 +157,7 @@ TEST(NearlySingular, MassesOfVeryDifferentSize) {
     }
 }
 
-// (x + away) y'' - away y'' is x y'', in a factor: what rounds there is no term of the equation.
+// (x + away) y'' - away y'' is x y'' in a factor, so the terms that are rounded are no terms of the equation.
 TEST(NearlySingular, TermsThatVanishWithinAFactor) {
   const auto text = [](const std::string& product) {
     return "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex + y*ey + "
@@ -173,7 +173,7 @@ TEST(NearlySingular, TermsThatVanishWithinAFactor) {
   for (const char* q : {"x", "y", "z"}) EXPECT_NEAR(far.last(q), plain.last(q), 1e-8) << q;
 }
 
-// Bars that come to lie on one line: the constraints lose their hold, and that is said.
+// Bars that come to lie on one line make the constraints dependent, and the outcome names this.
 TEST(NearlySingular, WindowsThatFoldFlatStopWithTheirNames) {
   const std::string windows = R"toml(coordinates = ["a[i]", "c[k]"]
 index = {n = 2, i = "0..n", k = "1..n"}
@@ -200,7 +200,7 @@ constraint = [{name = "window[k]", equation = "B[k-1] + cos(c[k])*ex + sin(c[k])
   }
 }
 
-// Where there is no solution, nothing is taken for one: z''^2 = x reaches x = 0.
+// The branch z''^2 = x ends at x = 0, and no state beyond is taken for a solution.
 TEST(NearlySingular, ABranchThatEndsIsNoRoundOff) {
   const Result r = run(
       "coordinates = [\"x\", \"z\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + z*ez\"}]\n"

@@ -1,5 +1,5 @@
-// Motions from and through points where a formula has no derivatives, or no value: roots, norms and unit vectors of
-// zero. Closed forms.
+// Motions from and through points at which a formula has no derivatives or no value: roots, norms and unit vectors of
+// zero. They are compared with closed forms.
 #include <cmath>
 #include <functional>
 
@@ -67,7 +67,7 @@ TEST(OneSided, DragThroughTheHighestPoint) {
   EXPECT_NEAR(r.last("y'"), -std::tanh(3 - std::atan(2)), 2e-12);
 }
 
-// v' = 1 - v^(3/2): a branch point of the motion, 2 w dw / (1 - w^3) = dt with w^2 = v.
+// v' = 1 - v^(3/2) has a branch point: 2 w dw / (1 - w^3) = dt with w^2 = v.
 TEST(OneSided, APowerThatIsNotWholeFromRest) {
   const Result r = run(particle("-norm(x'*ex + y'*ey)^(1/2)*(x'*ex + y'*ey) - ey", ""), 1);
   ASSERT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
@@ -147,7 +147,7 @@ TEST(OneSided, InManyDigitsAndByOtherMethods) {
   EXPECT_NEAR(rk.last("y'"), -std::tanh(2), 1e-10);
 }
 
-// The equations have no value where the motion ends, so the trial values of the search for one must not be in its row.
+// The equations have no value at the end of the motion, so its row must not hold trial values of the search for one.
 TEST(OneSided, WhereNoMotionGoesOnNothingLeadsTheState) {
   const std::string rolling = R"toml(coordinates = ["x", "y", "th"]
 frame.B = "rotz(th)"

@@ -1,4 +1,4 @@
-// A report that is written and read is the same report.
+// A report that is written and read back is the same report.
 #include <gtest/gtest.h>
 
 #include "simulation/report_json.h"
@@ -51,7 +51,7 @@ TEST(ReportJson, ComesBackAsItWasWritten) {
   EXPECT_EQ(r->error->kinds.at(1).kind, ColumnKind::event_time);
 }
 
-// Every number of the report changes its text: none is left out by both the writer and the reader.
+// Every number of the report changes its text, so the writer and the reader cannot both leave one out.
 TEST(ReportJson, HoldsEveryNumber) {
   const std::string text = report_json(full_report());
   const auto changed = [&](auto change) {
@@ -78,7 +78,7 @@ TEST(ReportJson, IsNoneWhereTheRunHasNotEnded) {
   EXPECT_FALSE(read_report(R"({"outcome": "unheard of"})").has_value());
 }
 
-// A file of somebody else may hold anything: what is of another kind than it should be is not known.
+// A file of another origin may hold anything: a value of the wrong kind counts as unknown.
 TEST(ReportJson, TakesWhatIsThere) {
   const auto r = read_report(R"({"outcome": "finished", "events": 3, "residuals": [], "steps": "many", "order": null,
       "error_estimate": {"digits": 11, "error": 1e-12, "of": "x", "t": 1, "means": "a second run"}, "monitors": {"w": 3}})");

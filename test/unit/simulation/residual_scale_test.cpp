@@ -1,5 +1,5 @@
-// The residual report has a scale that means something: motions at rest are no worse than others, and a wrong equation
-// shows, however small its forces.
+// The residuals have a meaningful scale: motions at rest are no worse than others, and a wrong equation is noticed,
+// however small its forces are.
 #include <gtest/gtest.h>
 
 #include "simulation/simulate.h"
@@ -30,7 +30,7 @@ SimulationReport report(const Scenario& scenario, const Rational& to, const Rati
 
 constexpr double kRoundoff = 1e-16;  // of long double, with room
 
-// All velocities are round-off, of forces that balance.
+// All velocities are round-off of forces in balance.
 TEST(ResidualScale, AHangingChainAtRest) {
   const SimulationReport r = report(scenario(R"toml(coordinates = ["x[i]", "y[i]"]
 index.i = "1..4"
@@ -53,7 +53,7 @@ guess = {"y[1]" = -0.1, "y[2]" = -0.2, "y[3]" = -0.3, "y[4]" = -0.4}
   EXPECT_LT(r.power, kRoundoff);
 }
 
-// A rod without freedom beside a mass that swings.
+// A rod without freedom, beside a mass that swings.
 TEST(ResidualScale, WhatCannotMoveBesideWhatMoves) {
   const SimulationReport r = report(scenario(R"toml(coordinates = ["x", "y", "th", "z"]
 body = [{name = "rod", mass = 1, inertia = "1/12", center = "x*ex + y*ey", angle = "th"}]
@@ -74,7 +74,7 @@ initial = {z = 0.1, guess = {x = 0.5, th = 1}}
     for (const double x : c.residuals) EXPECT_LT(x, kRoundoff) << c.name;
 }
 
-// On level ground: z, pitch and their derivatives are round-off of what the wheels do.
+// On level ground z, pitch and their derivatives are round-off of the wheels' motion.
 TEST(ResidualScale, ACartThatStaysLevel) {
   const SimulationReport r = report(scenario(R"toml(coordinates = ["x", "y", "z", "psi", "pitch", "roll", "phi"]
 frame.B = "rotz(psi)*roty(pitch)*rotx(roll)"
@@ -99,7 +99,7 @@ initial = {z = 0.08, "psi'" = 0.7}
     for (const double x : c.residuals) EXPECT_LT(x, kRoundoff) << c.name;
 }
 
-// 10^7 joules turned over, none left.
+// The sled turns over 10^7 joules and comes to rest.
 TEST(ResidualScale, ASledThatHasComeToRest) {
   const SimulationReport r = report(scenario(R"toml(coordinates = ["s"]
 particle = [{name = "sled", mass = 100, position = "s*ex"}]
@@ -111,7 +111,7 @@ initial = {"s'" = 400}
   EXPECT_LT(r.power, 1e-12);
 }
 
-// A particle in balance on a slope: gravity and the slope do work of opposite sign on what round-off makes of its way.
+// A particle in balance on a slope: gravity and the slope do opposite work on the round-off of its path.
 TEST(ResidualScale, AParticleInBalance) {
   const SimulationReport r = report(scenario(R"toml(coordinates = ["x", "y"]
 particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
@@ -131,8 +131,8 @@ std::string pendulum(const char* mass) {
          "initial = {x = 0.6, guess = {y = -0.8}}\n";
 }
 
-// The mutant: gravity with the wrong sign in the equations that are integrated. Newton's law and the balance of energy
-// know better, whatever the units.
+// The mutant: the integrated equations have gravity with the wrong sign. Newton's law and the balance of energy show it
+// in any units.
 TEST(ResidualScale, AWrongSignIsReportedLarge) {
   for (const char* mass : {"1", "1/1000000000", "1000000000"}) {
     Workspace s(scenario(pendulum(mass)));

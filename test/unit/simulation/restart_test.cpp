@@ -1,4 +1,4 @@
-// A run that is laid down and taken up again gives the rows of the run that never stopped, bit by bit.
+// A run that is saved and continued gives the rows of the run that never stopped, bit by bit.
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ struct Result {
   std::string saved;
 };
 
-// With `most_steps` it ends between rows that are asked for, and has no row of its own there.
+// With `most_steps` the run ends between requested rows and has no row of its own there.
 Result run(const Case& c, const Rational& to, const SavedRun* resume, const std::string& set_apart = {},
            std::size_t most_steps = 0) {
   Scenario s;
@@ -56,7 +56,7 @@ TEST_P(Restart, GoesOnWithTheSameBits) {
   const Case& c = GetParam();
   const std::string monitor = "\n[monitor]\nwatched = \"t^2\"\n";
   Result first = run(c, c.half, nullptr, monitor);
-  // Where rows are those of the steps, the end of the first run would be one more row, with residuals of its own.
+  // If rows are at the steps, the end of the first run is one more row, with residuals of its own.
   if (c.steps) first = run(c, c.whole, nullptr, monitor, first.report.steps);
   const SavedRun saved = read_saved({"run.state", first.saved});
   const Result second = run(c, c.whole, &saved, monitor), whole = run(c, c.whole, nullptr, monitor);
@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Case{"Sleigh", "zoo/chaplygin-sleigh"}, Case{"DoublePendulum", "zoo/double-pendulum-cartesian"},
                     Case{"AtTheSteps", "zoo/double-pendulum-cartesian", "routh", Precision::real, 16, 1, 2, true},
                     Case{"ConstantJerk", "zoo/constant-jerk"},
-                    // Its equations are written anew between the two.
+                    // Its equations are written anew between the two runs
                     Case{"WrittenAnew", "zoo/two-wheeled-pendulum", "routh", Precision::real, 16, 150, 165},
                     Case{"InQuasiVelocities", "zoo/disc"},
                     Case{"InQuasiVelocitiesAtTheSteps", "zoo/snakeboard", "routh", Precision::real, 16, 1, 2, true},
@@ -100,7 +100,7 @@ TEST(Restart, TheEliminationChangesBeforeAndAfter) {
   EXPECT_GE(all, 1U) << "the case above must hold a change of the elimination";
 }
 
-// Stopped between any two steps, also next to a change of the elimination.
+// The run is stopped between any two steps, also next to a change of the elimination.
 TEST(Restart, GoesOnFromEveryStep) {
   const auto motion = [](std::size_t most_steps, const SavedRun* resume, std::string* saved) {
     Scenario s;
@@ -132,7 +132,7 @@ TEST(Restart, GoesOnFromEveryStep) {
   }
 }
 
-// An event sets a mode before the run is laid down; none sets it after.
+// An event sets a mode before the run is saved; none sets it afterwards.
 TEST(Restart, GoesOnWithTheModesThatEventsHaveSet) {
   const auto motion = [](Precision precision, const Rational& to, const SavedRun* resume, std::string* saved) {
     Scenario s;
@@ -198,7 +198,7 @@ TEST(Restart, RefusesWhatDoesNotFit) {
   EXPECT_EQ(refusal("coordinates = []\n"), "this is not a saved run");
   EXPECT_EQ(refusal(test::replaced(saved, "counts", "countz")),
             "the saved run was changed after it was written, or is cut off");
-  // The state of a larger system.
+  // The saved run belongs to a larger system.
   const SavedRun of_another = read_saved({"run.state", run({"", "zoo/disc"}, 1, nullptr).saved});
   EXPECT_THROW(run(c, 2, &of_another), Failure);
 }

@@ -1,5 +1,5 @@
-// Forces that are all but constant until they ramp, of which Taylor series know nothing from afar: no step passes over
-// them. Against closed forms, and against steps so short that each of them sees what comes.
+// Forces that are nearly constant until they ramp, which Taylor series do not show from afar: no step passes over them.
+// The motions are compared with closed forms, and with steps so short that each of them meets the ramp.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ struct Case {
   const char* force;  // on a particle of mass a, a = 1, at x
   const char* initial;
   int to;
-  double step;  // short enough
+  double step;  // length of short steps
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
@@ -108,7 +108,7 @@ TEST_P(Saturation, IsNotSteppedOver) {
   }
 }
 
-// A run that goes on repeats its last step in full, wherever that was cut short, and whatever was looked at.
+// A continued run repeats its last step in full, wherever the run was cut off and whatever was reported.
 TEST_P(Saturation, RunsGoOnWithTheSameBits) {
   const auto go = [&](const Rational& to, const SavedRun* resume, SavedRun* saved, bool kernel) {
     Scenario s;
@@ -148,7 +148,7 @@ std::vector<CaseResult> swept(const Case& c, std::vector<Rational> masses) {
   return results.list;
 }
 
-// In the lanes of one kernel each motion ends its steps where it has to, whatever those beside it do.
+// In the lanes of one kernel each motion ends its steps where its own force requires it, for any neighbours.
 TEST_P(Saturation, IsNotSteppedOverBySweeps) {
   std::vector<Rational> masses;
   for (int k = 0; k < 70; ++k) masses.push_back(Rational(40 + k) / 40);

@@ -40,7 +40,7 @@ std::ostream& operator<<(std::ostream& out, const Case& c) {
 
 class SecondOpinionOn : public testing::TestWithParam<Case> {};
 
-// Errors add up along the motion: a thousand times the tolerance of a step.
+// Errors add up along the motion to at most a thousand times the tolerance of a step.
 TEST_P(SecondOpinionOn, AgreesWithTaylor) {
   Motion motion(test::shipped_text(GetParam().model), GetParam().form);
   ASSERT_TRUE(motion.start.ok()) << motion.start.message;
@@ -55,7 +55,7 @@ TEST_P(SecondOpinionOn, AgreesWithTaylor) {
   EXPECT_LT(r.second->difference, 1e-6);
   EXPECT_GT(r.second->difference, 0) << "the same bits are no second opinion";
   EXPECT_GT(r.second->steps, 4U);
-  // The rows written are the other motion's, and what is reported is their difference.
+  // The written rows are those of the other integrator, and the reported number is their difference from Taylor's.
   double largest = 0;
   for (std::size_t k = 0; k < r.rows; ++k)
     for (std::size_t a = 0; a < motion.scenario.model->coordinates.size(); ++a) {
@@ -63,8 +63,8 @@ TEST_P(SecondOpinionOn, AgreesWithTaylor) {
       largest = std::max(largest, std::abs(its - mine) / (1 + std::abs(mine)));
     }
   EXPECT_NEAR(largest, r.second->difference, 1e-15);  // round-off of the rows
-  // Accelerations and multipliers are solved for at its points; its state drifts from the constraints, its energy from
-  // the work. Newton's law drifts where its equations are differentiated, too; forms without multipliers hold on the
+  // Accelerations and multipliers are solved for at its points; its state drifts from the constraints, and its energy
+  // from the work. Newton's law also drifts if its equations are differentiated; forms without multipliers hold on the
   // constraints only.
   const Structure& t = motion.scenario.structure;
   const bool hidden =
@@ -78,7 +78,7 @@ TEST_P(SecondOpinionOn, AgreesWithTaylor) {
 std::vector<Case> cases() {
   std::vector<Case> all;
   for (const Method k : {Method::cvode, Method::ida}) {
-    // Orders 0 (index 3), 1, 2 and 3; linear and not; a varying mass; coordinates eliminated.
+    // Orders 0 (index 3), 1, 2 and 3, linear and nonlinear; a varying mass; eliminated coordinates.
     for (const char* model :
          {"zoo/double-pendulum-cartesian", "zoo/chaplygin-sleigh", "zoo/disc", "zoo/snakeboard", "zoo/isokinetic",
           "zoo/constant-acceleration", "zoo/constant-jerk", "zoo/third-order-linear", "zoo/rocket", "zoo/fourbar"})
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Models, SecondOpinionOn, testing::ValuesIn(cases()), []
   return test::test_name(c.param.model + "_" + name(c.param.integrator) + "_" + c.param.form);
 });
 
-// What the other integrator makes of the same motion with one parameter changed.
+// The difference of the other integrator from Taylor's if one parameter is multiplied by `factor`.
 double difference(Method integrator, double factor) {
   Motion motion(test::shipped_text("zoo/chaplygin-sleigh"));
   Workspace s(motion.scenario);

@@ -1,4 +1,4 @@
-// What is solved together, in which order, and what the state must satisfy.
+// Blocks of equations that are solved together, their order, and the constraints of the state.
 #include <gtest/gtest.h>
 
 #include "structure/blocks.h"
@@ -22,7 +22,7 @@ Analysed analysed(const std::shared_ptr<const Model>& model) {
   a.system = implicit_system(model, m, *find_formulation("routh"), all);
   Column values;
   for (const Parameter& p : model->parameters) values.push_back(p.value);
-  // Near the initial data: a launcher has no equations at the centre of the Earth.
+  // Hints come from the initial data: a launcher has no equations at the centre of the Earth.
   const std::vector<double> parameters = evaluate_parameters<double>(*model->graph, values);
   InitialState<double> start;
   ProbeHints hints;
@@ -44,8 +44,8 @@ Names unknowns(const Analysed& a) {
   return out;
 }
 
-// Each equation needs, at the order it is solved at, unknowns of its own block and of earlier ones only; and no block
-// can be taken apart: that is what the words mean.
+// Each equation needs, at the order at which it is solved, only unknowns of its own block and of earlier ones, and no
+// block can be split: this defines blocks.
 void expect_triangular(const Structure& t) {
   const std::vector<Block> list = blocks(t);
   std::vector<std::size_t> block_of(t.c.size(), SIZE_MAX);
@@ -95,13 +95,13 @@ TEST(Blocks, TriangularForEveryShippedModel) {
   for (const std::string& name : test::shipped_models()) {
     SCOPED_TRACE(name);
     const std::shared_ptr<const Model> model = test::shipped(name);
-    EXPECT_EQ(model->unknown_functions.empty(), !name.ends_with("-symbolic"));  // by which test::moving_models() goes
+    EXPECT_EQ(model->unknown_functions.empty(), !name.ends_with("-symbolic"));  // test::moving_models() relies on this
     if (model->unknown_functions.empty()) expect_triangular(analysed(model).structure);
   }
 }
 
 TEST(Blocks, TheOrderIsThatOfTheDependences) {
-  // By hand: equation 0 needs 1, 1 and 2 need each other, 3 needs nothing but 0.
+  // Found by hand: equation 0 needs unknown 1, equations 1 and 2 need each other, 3 needs only 0.
   Structure t;
   constexpr int n = kAbsent;
   t.sigma = {{2, 2, n, n}, {n, 2, 2, n}, {n, 2, 2, n}, {2, n, n, 2}};
@@ -113,7 +113,7 @@ TEST(Blocks, TheOrderIsThatOfTheDependences) {
   EXPECT_EQ(list[0].equations, (std::vector<std::size_t>{1, 2}));
   EXPECT_EQ(list[1].equations, (std::vector<std::size_t>{0}));
   EXPECT_EQ(list[2].equations, (std::vector<std::size_t>{3}));
-  // An entry below d - c is no entry of the Jacobian.
+  // An entry below d - c does not occur in the Jacobian.
   t.sigma[2][1] = 1;
   EXPECT_EQ(blocks(t).size(), 4U);
 }
@@ -124,7 +124,7 @@ TEST(HiddenConstraints, AreTheEquationsThatAreDifferentiated) {
   ASSERT_EQ(rods.size(), 2U);
   EXPECT_EQ(pendulum.system.equation_names[rods[0].equation], "rod1");
   EXPECT_EQ(rods[0].orders, (std::vector<int>{0, 1}));
-  // Third order, linear: the equations of motion themselves bind accelerations and multipliers.
+  // For a linear constraint of third order the equations of motion themselves relate accelerations and multipliers.
   const Analysed jerk = analysed(test::shipped("zoo/third-order-linear"));
   const std::vector<HiddenConstraint> rows = hidden_constraints(jerk.system, jerk.structure);
   ASSERT_EQ(rows.size(), 2U);

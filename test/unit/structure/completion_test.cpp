@@ -1,4 +1,5 @@
-// The state beyond positions and velocities: given accelerations and multipliers, those that follow, choices, branches.
+// The state beyond positions and velocities: given accelerations and multipliers, values that follow, choices,
+// branches.
 #include <gtest/gtest.h>
 
 #include "structure/branch.h"
@@ -40,7 +41,7 @@ bool says(const InitialState<double>& s, const std::string& part) {
   return false;
 }
 
-// m x'' = l, m y'' = l z', m z'' = -6: the third derivatives hold l' and the constraint.
+// m x'' = l, m y'' = l z', m z'' = -6: the third derivatives contain l' and the constraint.
 const char* const kLinear = "x''' + z'*y''' = x";
 
 TEST(Completion, AccelerationsFollowFromTheMultiplier) {
@@ -70,7 +71,7 @@ TEST(Completion, WithoutEitherTheConstraintDoesNotReactAtTheStartAndThatIsSaid) 
   EXPECT_EQ(s.multipliers[0].origin[0], Origin::chosen);
   EXPECT_EQ(s.higher[0].value[0], 0.5);
   EXPECT_TRUE(says(s, "a choice: lambda.c = 0"));
-  // A guess is where the least change starts from: the acceleration nearest to it, in the mass norm, along (1, 3).
+  // The least change starts from the guess: the nearest acceleration to it, in the mass norm, along (1, 3).
   ASSERT_TRUE(complete(text(kLinear, "\"z'\" = 3\nguess = {\"x''\" = 1, \"y''\" = 3}\n", "[0, 0, -6]"), s).ok());
   EXPECT_NEAR(s.multipliers[0].value[0], 2, 1e-10);  // the metric is regularised by 1e-12
 }
@@ -80,7 +81,7 @@ TEST(Completion, AccelerationsThatNoMultiplierGivesAreRefused) {
   const Outcome o = complete(text(kLinear, "\"z'\" = 3\nqddot = {x = 0.2, y = 0.7}\n"), s);
   EXPECT_EQ(o.kind, OutcomeKind::inconsistent);
   EXPECT_NE(o.message.find("equation of motion"), std::string::npos) << o.message;
-  // A miss in the ninth digit is a rounded number.
+  // A miss in the ninth digit counts as a rounded number.
   ASSERT_TRUE(complete(text(kLinear, "\"z'\" = 3\nqddot = {x = 0.2, y = 0.600000001}\n"), s).ok());
   EXPECT_EQ(s.higher[0].origin[1], Origin::corrected);
   EXPECT_LT(s.largest_correction, 1e-8);
@@ -148,7 +149,7 @@ TEST(Branches, ThatDoNotExistAreRefused) {
   InitialState<double> s;
   Outcome o = complete(text("x''^2 + y''^2 + z''^2 = -1", ""), s);
   EXPECT_EQ(o.kind, OutcomeKind::no_convergence) << o.message;
-  // Both solutions pull: there is no other branch to ask for.
+  // The solutions are x''' = 3 and -3; lambda > 0 selects the latter, since 2 lambda x''' = m x'' = -2.
   o = complete(text("x'''^2 = 9", "qddot = {x = -1}\nbranch = {c = \"lambda > 0\"}\n"), s);
   ASSERT_TRUE(o.ok()) << o.message;
   EXPECT_NEAR(s.higher[1].value[0], -3, 1e-12);
@@ -175,7 +176,7 @@ TEST(Conditions, OnMultipliersFindVelocitiesOrElsePositions) {
           text(sphere, "x = 0\ny = 0\nz = -1\n\"y'\" = 0\nguess = {\"x'\" = 1}\nconditions = [\"lambda.c = -5\"]\n"), s)
           .ok());
   EXPECT_NEAR(s.qd[0] * s.qd[0], 2, 1e-11);
-  // At rest everywhere: the place is found where z'' has the value wanted.
+  // The system is at rest; the position is the one at which z'' has the given value.
   ASSERT_TRUE(
       complete(
           text(sphere,
@@ -193,8 +194,8 @@ TEST(Conditions, ThatCannotHoldAreNamed) {
   EXPECT_EQ(o.kind, OutcomeKind::inconsistent);
 }
 
-// The accelerations, velocities or positions of coordinates without inertia follow from the state: conditions on them are
-// conditions on the state.
+// Accelerations, velocities or positions of coordinates without inertia follow from the state, so conditions on them
+// are conditions on the state.
 std::string massless(const std::string& elements, const std::string& initial) {
   return "coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex\"}]\n" + elements +
          "\ninitial = {" + initial + "}\n";
@@ -220,7 +221,7 @@ TEST(Completion, ConditionsOnThePositionOfANodeWithoutInertia) {
   ASSERT_TRUE(complete(massless(spring, "conditions = [\"y' = 1\"]"), velocity).ok());
   EXPECT_NEAR(velocity.qd[0], 2, kRoundoff);
   EXPECT_NEAR(velocity.qd[1], 1, kRoundoff);
-  // With a damper y' = x - 2 y.
+  // With a damper, y' = x - 2 y.
   const std::string damper = std::string(spring) + "dissipation.d = \"y'^2/2\"\n";
   ASSERT_TRUE(complete(massless(damper, "x = 1, conditions = [\"y' = 0\"]"), damped).ok());
   EXPECT_NEAR(damped.q[1], 0.5, kRoundoff);

@@ -1,5 +1,5 @@
-// Consistent initial data: given values hold, missing ones follow by least change, rounded ones are corrected, clashes
-// are named.
+// Consistent initial data: given values hold, missing ones follow by least change, rounded ones are corrected,
+// contradictions are named.
 #include <gtest/gtest.h>
 
 #include "structure/consistent.h"
@@ -64,7 +64,7 @@ TEST(ConsistentState, WhatIsFreeChangesLeastInTheMassNorm) {
   ASSERT_TRUE(solve(text(constraint("x' + y' = 5"), "x = 0\ny = 0\n"), s).ok());
   EXPECT_NEAR(s.qd[0], 4, 1e-11);  // the metric is regularised by 1e-12
   EXPECT_NEAR(s.qd[1], 1, 1e-11);
-  // The mutant, least change in the Euclidean norm, is (2.5, 2.5); and from a guess the change is measured from there.
+  // The mutant, least change in the Euclidean norm, is (2.5, 2.5). With a guess the change is measured from the guess.
   ASSERT_TRUE(solve(text(constraint("x' + y' = 5"), "x = 0\ny = 0\nguess = {\"x'\" = 10, \"y'\" = 0}\n"), s).ok());
   EXPECT_NEAR(s.qd[0], 6, 1e-11);
   EXPECT_NEAR(s.qd[1], -1, 1e-11);
@@ -77,7 +77,7 @@ TEST(ConsistentState, PositionsComeFirstThenTheDerivedConstraint) {
   EXPECT_NEAR(s.qd[1], -3, 8 * kRoundoff);  // x x' + y y' = 0
 }
 
-// y' = x' sin(y - 3/10): with x' given, y' = 0 asks for a place.
+// y' = x' sin(y - 3/10): if x' is given, y' = 0 determines y.
 TEST(ConsistentState, ConditionsOnVelocitiesMovePositions) {
   const std::string law = constraint("y' = x'*sin(y - 0.3)"), moving = "\"x'\" = 1\nconditions = [\"y' = 0\"]\n";
   InitialState<double> s;
@@ -87,14 +87,14 @@ TEST(ConsistentState, ConditionsOnVelocitiesMovePositions) {
   EXPECT_EQ(s.q[0], 0);
   EXPECT_EQ(s.qd[0], 1);
   EXPECT_NEAR(s.qd[1], 0, kRoundoff);
-  // Where velocities fit, positions stay.
+  // Positions stay if velocities can satisfy the condition.
   ASSERT_TRUE(solve(text(law, "conditions = [\"y' = x' - 1\"]\n"), s).ok());
   EXPECT_EQ(s.q[1], 0);
-  // No place is one at infinity.
+  // A position at infinity is no solution.
   EXPECT_FALSE(solve(text(constraint("y' = x'*exp(-y)"), "x = 0\n" + moving), s).ok());
-  // A place that is given stays.
+  // A given position stays.
   EXPECT_FALSE(solve(text(law, "y = 0.5\n" + moving), s).ok());
-  // The same with the values of a command.
+  // The values of a command have the same effect.
   ASSERT_TRUE(solve(text(law, "conditions = [\"y' = 0\"]\n"), s, {{1, 0, 2}}).ok());
   EXPECT_NEAR(s.q[1], 0.3, kRoundoff);
 }
@@ -138,7 +138,8 @@ TEST(ConsistentState, ValuesThatClashAreNamed) {
   EXPECT_NE(o.hint.find("x, y"), std::string::npos) << o.hint;
 }
 
-// The cosine of a right angle is round-off, in any precision: x' follows from the constraint alone, and y' does not follow from it.
+// The cosine of a right angle is round-off in any precision: x' follows from the constraint alone, and y' does not
+// follow from it.
 TEST(ConsistentState, CoefficientsThatAreRoundOffDetermineNothing) {
   const auto blade = [](auto number, const std::string& equation, const std::string& velocity) {
     InitialState<decltype(number)> s;
@@ -154,7 +155,7 @@ TEST(ConsistentState, CoefficientsThatAreRoundOffDetermineNothing) {
   ASSERT_TRUE(outcome.ok());
   EXPECT_EQ(state.qd[1], 2);
   EXPECT_NEAR(state.qd[0], 0, kRoundoff);
-  // The mutant: a coefficient that is small, and no round-off.
+  // The mutant: a coefficient that is small, but no round-off.
   const auto [of_small, far] = blade(1.0, "small*y' = x'", given);
   ASSERT_TRUE(of_small.ok());
   EXPECT_NEAR(far.qd[1], -0.5e20, 1e6);
@@ -192,7 +193,7 @@ TEST(ConsistentState, HoldsInAnyPrecision) {
   EXPECT_LE(to_double(abs(Multi(s.qd[1] + Multi(Rational(1, 20))))), 1e-47);
 }
 
-// One state after the other with a memory, and each by itself.
+// States are computed one after the other with a memory, and each by itself.
 struct MemoryCase {
   const char *constraint, *initial;
   std::vector<std::vector<StateOverride>> starts;
@@ -237,11 +238,11 @@ TEST(ConsistentState, RoundOffOfDoublesIsNoClash) {
         text(constraint("x*x' + y*y' = 0"), "x = 0.6828\ny = " + y + "\n\"x'\" = 2.4e-17\n\"y'\" = 0.2764\n"), s);
   };
   EXPECT_TRUE(found("-6.7e-17").ok());
-  // The mutant: a thousand round-offs.
+  // The mutant: y is off by a thousand round-offs.
   EXPECT_EQ(found("-6.7e-14").kind, OutcomeKind::inconsistent);
 }
 
-// Conditions that follow from each other, as decimals of 16 digits, agree to these digits, also in wider numbers.
+// Conditions that follow from each other, given with 16 decimal digits, agree to these digits, also in wider numbers.
 TEST(ConsistentState, DecimalsThatOverlapAreNoClash) {
   const auto found = [](const std::string& sum) {
     InitialState<long double> s;
@@ -252,27 +253,27 @@ TEST(ConsistentState, DecimalsThatOverlapAreNoClash) {
                               s);
   };
   EXPECT_TRUE(found("-0.5014408728012463").ok()) << found("-0.5014408728012463").message;
-  // The mutant: the last digit but two.
+  // The mutant: the last digit but two is changed.
   EXPECT_EQ(found("-0.5014408728019463").kind, OutcomeKind::inconsistent);
 }
 
 TEST(ConsistentState, AMemoryLeavesTheBits) {
   const auto x = [](int number, int by) { return StateOverride{0, 0, Rational(number, by)}; };
   const auto rate = [](std::size_t of, int number, int by) { return StateOverride{1, of, Rational(number, by)}; };
-  // The rates follow from one linear constraint by least change; a condition gives way to the override of its rate.
+  // The rates follow from one linear constraint by least change; a condition is replaced by the override of its rate.
   same_with_memory({"x' + sin(x)*y' = 5",
                     "x = 0.5\ny = 0\nguess = {\"x'\" = 1}\n",
                     {{x(1, 2)}, {x(1, 2)}, {x(1, 3)}, {x(0, 1)}, {x(-1, 7)}, {x(1, 2)}}});
   same_with_memory({"x' + sin(x)*y'*mx = 5",
                     "x = 0.5\ny = 0\nconditions = [\"y' = 2\"]\n",
                     {{rate(1, 2, 1)}, {rate(1, 7, 3)}, {rate(1, 0, 1)}, {rate(1, 7, 3)}, {rate(1, 2, 1)}}});
-  // Positions are iterated, too; no point of the circle has x = 6.
+  // Positions are iterated as well; no point of the circle has x = 6.
   same_with_memory({"x^2 + mx*y^2 = 25",
                     "x = 3\nguess = {y = 1}\n\"x'\" = 4\n",
                     {{x(3, 1)}, {x(4, 1)}, {x(6, 1)}, {x(3, 1)}, {x(-3, 1)}, {x(3, 1)}}});
 }
 
-// Given values that are rounded numbers are corrected, and what is in no constraint stays at its guess.
+// Given values that are rounded numbers are corrected, and unknowns in no constraint stay at their guess.
 TEST(ConsistentState, CorrectedValuesLeaveTheOthersAtTheirGuess) {
   const auto particle = [](const std::string& equation, const std::string& initial) {
     return "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", "
@@ -286,14 +287,14 @@ TEST(ConsistentState, CorrectedValuesLeaveTheOthersAtTheirGuess) {
   EXPECT_EQ(s.q_origin[0], Origin::corrected);
   EXPECT_EQ(s.q[0], s.q[1]);
 
-  // The free unknown stands at a stationary point of the constraint, where its value is the right one.
+  // The free unknown is at a stationary point of the constraint, at which its value is right.
   InitialState<double> circle;
   ASSERT_TRUE(solve(particle("x^2 + y^2 = 1", "x = 1.000000001\nguess = {z = 3}\n"), circle).ok());
   EXPECT_NEAR(circle.q[0], 1, kRoundoff);
   EXPECT_NEAR(circle.q[1], 0, 1e-8);  // a double root
   EXPECT_EQ(circle.q[2], 3);
 
-  // 16 digits are rounded numbers in a wider type.
+  // In a wider type, 16 digits are rounded numbers.
   InitialState<long double> velocities;
   ASSERT_TRUE(
       solve(particle("x'*cos(z) = y'*sin(z)", "z = 0.3\n\"x'\" = 0.2955202066613395\n\"y'\" = 0.955336489125606\n"),
@@ -304,7 +305,7 @@ TEST(ConsistentState, CorrectedValuesLeaveTheOthersAtTheirGuess) {
   ASSERT_TRUE(solve(particle("x^2 + y^2 = 1", "x = 0.2955202066613395\ny = 0.955336489125606\n"), unit).ok());
   EXPECT_EQ(unit.q[2], 0);
 
-  // A value that follows from rounded ones does not pull them towards its guess.
+  // A value that follows from rounded values does not pull them towards its guess.
   InitialState<double> wheel;
   ASSERT_TRUE(solve(particle("y = 2*x", "x = 0.35\ny = 0.700000001\n") +
                         "[[constraint]]\nname = \"wheel\"\nequation = \"z = 3*x + y\"\n",
@@ -313,14 +314,14 @@ TEST(ConsistentState, CorrectedValuesLeaveTheOthersAtTheirGuess) {
   EXPECT_NEAR(wheel.q[0], 0.35, 2e-9);
   EXPECT_NEAR(wheel.q[2], 1.75, 1e-8);
 
-  // A search that begins at the centre of a circle leaves it in the unknowns of the circle alone.
+  // A search that begins at the centre of a circle changes only the unknowns of the circle.
   InitialState<double> centre;
   ASSERT_TRUE(solve(particle("x^2 + y^2 = 1", ""), centre).ok());
   EXPECT_NEAR(centre.q[0] * centre.q[0] + centre.q[1] * centre.q[1], 1, 4 * kRoundoff);
   EXPECT_EQ(centre.q[2], 0);
 }
 
-// A trailer without mass that does not turn is in line with its sleigh: x, y and the direction stay at 0.
+// A trailer without mass that does not turn is in line with its sleigh; x, y and the direction stay at 0.
 TEST(ConsistentState, NothingMovesThatNeedNot) {
   InitialState<double> s;
   ASSERT_TRUE(
@@ -338,9 +339,9 @@ TEST(ConsistentState, NothingMovesThatNeedNot) {
   EXPECT_NEAR(s.qd[0], 1, kRoundoff);
 }
 
-// The shape of a chain between two hooks that is nearest to a guess which misses both hooks: Newton's method does not find it
-// from there, a descent does. The values solve M (z - guess) = A^T mu and the constraints (theory: initial-data), found by
-// mpmath with the mass matrix written by hand.
+// The shape of a chain between two hooks that is nearest to a guess which misses both hooks: a descent finds it from
+// there, Newton's method does not. The values solve M (z - guess) = A^T mu and the constraints (theory: initial-data);
+// mpmath found them with the mass matrix written by hand.
 template <class N>
 InitialState<N> chain_between_hooks() {
   InitialState<N> s;
@@ -356,7 +357,7 @@ InitialState<N> chain_between_hooks() {
 }
 
 TEST(ConsistentState, TheNearestOfManySolutionsIsFoundInEveryNumberType) {
-  constexpr double kMetric = 1e-11;  // of the addition to the mass matrix, 1e-12
+  constexpr double kMetric = 1e-11;  // of the term 1e-12 that is added to the mass matrix
   const double nearest[] = {-0.54612046519630899667, -0.29551283933196027283, -0.1035201490844144212,
                             1.9886999402759545819};
   const InitialState<double> s = chain_between_hooks<double>();

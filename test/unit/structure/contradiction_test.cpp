@@ -1,4 +1,4 @@
-// Initial data that contradict each other: the set that is named is contradictory, and no part of it is.
+// Contradictory initial data: the named set is contradictory, and no part of it is.
 #include <random>
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST(Contradiction, OfVelocitiesNamesThoseThatClashAndNoOthers) {
 }
 
 TEST(Contradiction, OfOneValueSaysWhatIsAskedInItsPlace) {
-  // The least miss is shared by all constraints: the largest is none of the clash.
+  // All constraints share the least miss; the constraint with the largest miss is not part of the contradiction.
   const Outcome o = solve(text({"x", "y", "u"}, {"x' + y' = u'", "1000*(x' - y') = 0", "y' = 0"}, "\"y'\" = 1\n"));
   ASSERT_EQ(o.kind, OutcomeKind::inconsistent);
   EXPECT_TRUE(says(o, "y' = 1 (line 24) clashes with constraint 'c3' (line 22), which asks for y' = 0 here"))
@@ -59,7 +59,7 @@ TEST(Contradiction, OfOneValueSaysWhatIsAskedInItsPlace) {
 TEST(Contradiction, OfConstraintsAloneBlamesNoValue) {
   const Outcome o = solve(text({"x", "y"}, {"x' = 1", "x' + y' = 2", "2*y' = 3"}, "x = 3\n\"y'\" = 1\n"));
   ASSERT_EQ(o.kind, OutcomeKind::inconsistent);
-  // y' = 1 fits two of them and clashes with the third alone.
+  // y' = 1 fits two of them and contradicts the third.
   EXPECT_TRUE(says(o, "y' = 1")) << o.message;
   EXPECT_TRUE(says(o, "'c3'"));
   EXPECT_FALSE(says(o, "'c1'"));
@@ -69,7 +69,7 @@ TEST(Contradiction, OfConstraintsAloneBlamesNoValue) {
 }
 
 TEST(Contradiction, OfPositionsIsFoundByLeavingOut) {
-  // Two links: the first cannot reach x = 2, the second has nothing to do with it.
+  // Two links: the first cannot reach x = 2, and the second does not take part in the contradiction.
   const Outcome o = solve(text({"x", "y", "u", "v"}, {"x^2 + y^2 = 1", "(u - x)^2 + (v - y)^2 = 1"},
                                "x = 2\nu = 1\nguess = {y = -1, v = -2}\n"));
   ASSERT_EQ(o.kind, OutcomeKind::inconsistent);
@@ -97,7 +97,7 @@ TEST(Contradiction, WithTheCommandLineNamesItsValuesNotThoseOfTheFile) {
   EXPECT_FALSE(says(o, "x'")) << o.message;
 }
 
-// Of random linear systems: with all members there is no solution, with any one left out there is.
+// Random linear systems: with all members there is no solution, with any one left out there is.
 TEST(Contradiction, OfLinearEquationsIsMinimal) {
   std::mt19937 random(20260);
   int clashes = 0, several = 0;

@@ -37,8 +37,8 @@ TEST(IndependentConstraints, KeepTheLowerOrder) {
 }
 
 // The rows of the two constraints are (2 x0'', 2 x11'') and (x11'', x0''). Accelerations are no part of the state, so
-// the rows are looked at where nothing is special: at x0'' = x11'' they would be parallel, and one constraint would be
-// called redundant.
+// the rows are taken at generic values: at x0'' = x11'' they would be parallel, and one constraint would be called
+// redundant.
 TEST(IndependentConstraints, AreNotRedundantByAccident) {
   std::string text = "coordinates = [";
   for (int a = 0; a < 12; ++a) text += (a ? ", \"x" : "\"x") + std::to_string(a) + "\"";
@@ -58,7 +58,7 @@ TEST(IndependentConstraints, AreNotRedundantByAccident) {
   EXPECT_TRUE(c.redundant.empty());
 }
 
-// The second is nearly the first; the third is a good one.
+// The second row nearly equals the first; the third is far from it.
 TEST(IndependentConstraints, PreferRowsFarFromDependent) {
   const IndependentConstraints c = choice_of("x' = 3*y';x' = 3*y' + z'/1000;x' = z' + 3*y'", "\"y'\" = 0\n");
   EXPECT_EQ(c.independent, (Indices{0, 2}));
@@ -75,7 +75,7 @@ TEST(IndependentConstraints, RowsThatVanishStayIn) {
   EXPECT_EQ(choice_of("x' = 3*y';x'^2 = 0", "\"y'\" = 0\n").independent, (Indices{0, 1}));
 }
 
-// The third row is twice the first and half of the second.
+// The third row is twice the first plus half of the second.
 TEST(LeastMultipliers, AreTheLeastWithTheSameForces) {
   Matrix<double> phi(3, 2);
   phi(0, 0) = 1, phi(1, 1) = 3, phi(2, 0) = 2, phi(2, 1) = 1.5;
@@ -85,7 +85,7 @@ TEST(LeastMultipliers, AreTheLeastWithTheSameForces) {
     for (std::size_t i = 0; i < 3; ++i) force += phi(i, a) * lambda[i];
     EXPECT_NEAR(force, a == 0 ? 5 : -6, 1e-14);
   }
-  // Nothing along (2, 1/2, -1), the kernel of Phi^T.
+  // lambda has no part along (2, 1/2, -1), the kernel of Phi^T.
   EXPECT_NEAR(2 * lambda[0] + lambda[1] / 2 - lambda[2], 0, 1e-14);
 }
 

@@ -35,7 +35,7 @@ void expect(const Analysed& a, const Ints& c, const Ints& d, int dimension) {
   EXPECT_EQ(a.structure.c, c);
   EXPECT_EQ(a.structure.d, d);
   EXPECT_EQ(a.structure.state_dimension, dimension);
-  // d_j - c_i >= sigma_ij, equality on the transversal: what makes the offsets valid.
+  // d_j - c_i >= sigma_ij, with equality on the transversal: this makes the offsets valid.
   for (std::size_t i = 0; i < a.structure.c.size(); ++i) {
     for (std::size_t j = 0; j < a.structure.d.size(); ++j)
       EXPECT_TRUE(a.structure.sigma[i][j] == kAbsent || a.structure.d[j] - a.structure.c[i] >= a.structure.sigma[i][j])
@@ -103,7 +103,7 @@ TEST(Structure, TheDegreesOfFreedomAreIndependentVelocities) {
 }
 
 TEST(Structure, ADerivativeThatCancelsDoesNotCount) {
-  // x'' sin^2 + x'' cos^2 - x'': the symbol is there, the derivative is not.
+  // In x'' sin^2 + x'' cos^2 - x'' the symbol occurs, but the derivative does not.
   const std::string text = particle(constraint("c", "z*(sin(x)^2 + cos(x)^2 - 1)*y'' + x' = y'"));
   expect(analysed(test::model_of(text)), {0, 0, 0, 1}, {2, 2, 2, 0}, 5);
 }

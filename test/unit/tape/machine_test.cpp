@@ -176,7 +176,7 @@ TEST(Taylor, AWrongCoefficientIsRefuted) {
   EXPECT_GT(error_in_roundoffs<double>(sin(x), expected), 1e4);
 }
 
-// The balls of coefficients at t, or on all of an interval around it.
+// Balls of the coefficients at t, or over a whole interval around it.
 std::vector<Ball> enclosed(Expr e, const Ball& t, int orders) {
   const Tape tape = compile({&e, 1});
   Machine<Ball> machine(tape, static_cast<std::size_t>(orders), {Ball(Rational(3, 4))});
@@ -220,7 +220,7 @@ TEST(MachineOfBalls, EnclosesTheCoefficientsAtAPointAndOnAnInterval) {
     const std::vector<Ball> at = enclosed(e, Ball(0), kOrders);
     for (std::size_t i = 0; i < at.size(); ++i) {
       if (!at[i].is_finite() || !expected[i].finite()) continue;
-      Ball near(expected[i]);  // the reference comes from differences: right to some 20 digits
+      Ball near(expected[i]);  // the reference comes from differences, with some 20 right digits
       near += Ball(Rational(0), Rational(1, mpz_class("100000000000000"))) * (Ball(1) + abs(near));
       EXPECT_TRUE(near.overlaps(at[i])) << k << ", order " << i << ": " << print(e, {}, Format::text);
       EXPECT_LT(*at[i].spread().radius(),
@@ -230,7 +230,7 @@ TEST(MachineOfBalls, EnclosesTheCoefficientsAtAPointAndOnAnInterval) {
   EXPECT_GT(finite, 1000);
 }
 
-// Where a function is not smooth on the whole ball no coefficient after the first may pretend to be one.
+// On a ball on which a function is not smooth, no coefficient after the first is known.
 TEST(MachineOfBalls, KnowsNothingBesideAKink) {
   Graph g;
   const Expr x = g.time();
@@ -245,8 +245,7 @@ TEST(MachineOfBalls, KnowsNothingBesideAKink) {
   EXPECT_TRUE(enclosed(abs(x), wide, 0)[0].is_finite());
 }
 
-// A root with lead c holds, after stage s, its coefficients up to order s + c: the derivative of order c comes out at
-// stage 0.
+// A root with lead c has, after stage s, its coefficients up to order s + c: stage 0 gives the derivative of order c.
 TEST(Leads, GiveTheCoefficientsOfTheDerivative) {
   const PrecisionScope precision(50);
   Graph g;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kRoundOff = 1e-14;  // of a few operations with numbers below 10
 
-// Whether the value or the derivative of f(x) differs at x on both sides of a border; nullopt if x lies on none.
+// True if the value or the derivative of f(x) differs on the two sides of a border at x; nullopt if x lies on no
+// border.
 std::optional<bool> rough(Expr f, Expr x, double at) {
   const OneSided sides({f}, {x}, 0);
   const auto found = sides.sides<double>(
