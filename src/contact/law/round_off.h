@@ -18,6 +18,9 @@ class RoundOff {
 
   // A place is known to this part of the size of its terms.
   static constexpr long double kPlace = 1e-14L;
+  // A gap that begins at zero hits below minus this part of the size of its terms. It is more than the part below which
+  // the watch of events takes a value for round-off.
+  static constexpr long double kDepth = 2e-14L;
 
   // True if an event has closed the gap, or if the gap is at most round-off, because the state is rounded to doubles.
   bool closed(std::size_t contact) const;
