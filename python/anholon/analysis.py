@@ -62,7 +62,7 @@ class Comparison(Sequence[_core.ComparedEquation]):
 
     @property
     def all_true(self) -> bool:
-        """Whether every equation is proved to be true."""
+        """True if every equation is proved to be true."""
         return all(line.verdict == "true" for line in self.lines)
 
     def __bool__(self) -> bool:

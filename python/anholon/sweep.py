@@ -171,7 +171,7 @@ class Sweep(Mapping[str, "Array"]):
         return iter(self._core.columns)
 
     def __len__(self) -> int:
-        """The number of columns; ``cases`` is that of the motions."""
+        """The number of columns; ``cases`` is the number of motions."""
         return len(self._core.columns)
 
     @property
