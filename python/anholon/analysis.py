@@ -246,7 +246,7 @@ class LinearModel:
 
     @property
     def cyclic(self) -> list[str]:
-        """The entries of z on which no rate depends, such as the place of a bicycle on the ground."""
+        """The coordinates and states among z that do not influence the core, such as the place of a bicycle on the ground."""
         return self._core.cyclic
 
     @property

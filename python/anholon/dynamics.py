@@ -256,7 +256,7 @@ class Dynamics:
         return np.array(self._core.inputs_at(time, state.tolist(), [] if parameters is None else parameters.tolist()))
 
     def jac(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
-        """Returns the exact derivatives of the rates (or outputs) at one state or many; they are no finite differences.
+        """Returns the exact derivatives of the rates (or outputs) at one state or many, not finite differences.
 
         Args:
             t: the time, s.

@@ -30,7 +30,7 @@ from .sweep_folder import SweepFolder
 if TYPE_CHECKING:
     from distributed import Client
 
-# Options of anholon simulate that are no keywords of simulate(), with the way to the same in Python.
+# Options of anholon simulate that are no keywords of simulate(), with hints how Python does the same.
 _ELSEWHERE = {
     "t": 'initial={"t": 1} is the time at which the motion starts',
     "save": "run.save(\"run.h5\") writes the rows; pickle.dumps(run) keeps the run with all that it can do",
@@ -74,7 +74,7 @@ class Model(Analysed):
         return Model(self._again(given, cases), self._again, given, cases)
 
     def in_mode(self, word: str, *more: str) -> Model:
-        """Returns the model of one mode, in which contacts exert ideal forces and never open, slip or stick anew.
+        """Returns the model of one mode, in which contacts exert ideal forces and keep their state.
 
         :meth:`equations`, :meth:`prove`, :meth:`compare` and :meth:`linearize` need it if the model has contacts.
 
@@ -144,12 +144,12 @@ class Model(Analysed):
 
         Args:
             to: the end, s; that of the file if it is None.
-            every: the distance of rows in time, s; there is a row at each step if it is None.
+            every: the interval of rows, s, counted from the start; there is a row at each step if it is None.
             at: times, s. The run has rows at these times only, in the order of time; a time that is given twice has one row.
             initial: values instead of those of the file: ``{"theta": 1.3, "phi'": 6}``, in SI units; ``{"t": 1}`` is the time at
                 which the motion starts. The initial value of a state of the model is the value of a parameter, which :meth:`with_`
                 sets.
-            tolerance: the relative tolerance of each step; 1e-12 if the file has none, either.
+            tolerance: the relative tolerance of each step; that of the file if it is None, and 1e-12 if the file has none.
             form: the form of the equations; ``auto`` is the form whose motion takes the fewest operations.
             eliminate: coordinates that forms without multipliers eliminate; the program chooses them if there are none.
             method: ``auto``, ``taylor``, ``rk`` or ``bdf``.
