@@ -63,7 +63,7 @@ def warm():
 
 
 def measure(place, arguments, workers):
-    """The best run of some: wall time, CPU time of the workers, of the scheduler."""
+    """Returns wall time, CPU time of the workers and CPU time of the scheduler of the best of several runs."""
     runs = []
     with Cluster(place, workers) as cluster, Client(cluster.address, timeout=60) as client:
         client.wait_for_workers(workers, timeout=60)

@@ -41,18 +41,18 @@ OWN_LEVELS = tuple(10.0**-k for k in range(4, 18))
 ODEINT_LEVELS = tuple(10.0**-k for k in range(5, 17))
 CVODE = ("adams", "bdf")
 CVODE_LEVELS = tuple(10.0**-k for k in range(4, 14))
-# Systems with neighbours: the coordinate in whose beginning they differ.
+# Systems that are measured in lanes, too, and the coordinate in whose initial value their motions differ.
 BATCHED = {
     "sleigh": "th", "disc": "theta", "trailers 3": "th[1]", "trailers 10": "th[1]",
     **{f"chain {n}": "th[1]" for n in (4, 8, 16)},
 }  # fmt: skip
 BATCH_LEVELS = LEVELS[:3]
 OWN_BATCH_LEVELS = tuple(10.0**-k for k in range(5, 15))
-OWN_REFERENCE = 16  # links and trailers up to which our own motion in many digits is compared, too
+OWN_REFERENCE = 16  # up to so many links and trailers, Anholon's motion in 32 digits is compared, too
 
 
 class Worker:
-    """A process that answers each line by one of JSON."""
+    """A process that answers each line by a line of JSON."""
 
     def __init__(self, command, **options):
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, **options)
@@ -84,7 +84,7 @@ class Worker:
 
 
 def idle_cpu(seconds=0.1):
-    """The core that had most rest in the last moment."""
+    """Returns the core that was idle most in the last moment."""
 
     def rest():
         with open("/proc/stat", encoding="ascii") as file:
@@ -97,7 +97,7 @@ def idle_cpu(seconds=0.1):
 
 
 def error(state, exact):
-    """In decimals, since a difference of doubles would be no better than what it measures."""
+    """Returns the error of a state. It computes in decimals, as a difference of doubles has rounding errors of the same size."""
     return max(float(abs(Decimal(x) - Decimal(y)) / (1 + abs(Decimal(y)))) for x, y in zip(state, exact, strict=True))
 
 
@@ -105,7 +105,7 @@ def error(state, exact):
 
 
 def install_heyoka():
-    """The Python that has it, or nothing, with a line that says why."""
+    """Returns the Python that has heyoka; if the installation fails, prints why and returns None."""
     python = os.path.join(PEERS, "bin", "python")
     try:
         if not os.path.exists(python):
@@ -121,7 +121,7 @@ def install_heyoka():
 
 
 class Heyoka:
-    """The modes of one system that can be compiled in the time allowed; the best for each tolerance."""
+    """heyoka on one system: the modes that compile in the time allowed, of which the best is chosen for each tolerance."""
 
     def __init__(self, python, name, n, end, start, jit_limit):
         environment = {**os.environ, "HEYOKA_CACHE_DIR": os.path.join(PEERS, "cache")}
@@ -134,18 +134,18 @@ class Heyoka:
         self.limit, self.expected, self.skipped = jit_limit, {}, []
 
     def limit_of(self, mode):
-        """Without fast math it is hardly ever worth long."""
+        """Returns the time allowed for compiling a mode. Long compilation hardly ever pays without fast math."""
         return self.limit if "compact" in mode or "fast" in mode else self.limit / 30
 
     def affordable(self, tolerance, mode):
-        """Compiling takes about 2.5 times as long from one tolerance to the next."""
+        """True if a mode is expected to compile in the time allowed: about 2.5 times as long as at the tolerance before."""
         if self.expected.get(mode, 0) > self.limit_of(mode):
             self.skipped.append((tolerance, mode))
             return False
         return True
 
     def looks_at(self, modes, *request):
-        """mode -> first look at each; the best mode, or none."""
+        """Measures each mode for a short time. Returns the best mode, or None, and the times by mode."""
         looks = {}
         for mode in modes:
             command, tolerance, *others = request
@@ -165,7 +165,7 @@ class Heyoka:
         return best, looks
 
     def choose_batch(self, tolerance, looks, starts):
-        """Of the modes that compile one motion in the time allowed: several take about as long."""
+        """Chooses the best mode for batches, of those that compile one motion in the time allowed: a batch compiles about as long."""
         return self.looks_at([m for m, look in looks.items() if look["jit"] <= self.limit_of(m)], "batch", tolerance, starts)
 
 
@@ -173,7 +173,7 @@ class Heyoka:
 
 
 def better(old, new, state):
-    """The cell of the round that was disturbed least."""
+    """Returns the better of two cells, that of the round that was disturbed least."""
     if "failed" in new:
         return old or {"failed": new["failed"]}
     new = {**new, "error": error(new.pop("state"), state)}
@@ -240,8 +240,8 @@ def measure(title, python, options):
 
 
 def take_turns(requests, workers, cells, exact, rounds, modes):
-    """Each request in every round, on the core that is idle then."""
-    requests.sort(key=lambda r: (-r[1], r[0]))  # both sides of a cell one after the other
+    """Makes each request in each round, on the core that is idle at the time."""
+    requests.sort(key=lambda r: (-r[1], r[0]))  # both sides of a cell follow each other
     for _ in range(rounds):
         cpu = idle_cpu()
         for w in workers:
@@ -257,7 +257,7 @@ def take_turns(requests, workers, cells, exact, rounds, modes):
 
 
 def measure_batch(title, own, heyoka, single_modes, options):
-    """Neighbours in the lanes of one core: times, steps and expansions of a trajectory, the error of the worst."""
+    """Measures neighbouring motions in the lanes of one core: times, steps and expansions of a trajectory, and the largest error."""
     lanes = own.ask("lanes", BATCHED[title])
     cells = {"own": {}, "heyoka": {}}
     if "failed" in lanes:
@@ -316,7 +316,7 @@ def main():
         result["startup"] = measure_startup(os.path.join(ROOT, "build", "anholon"))
     if not options.no_commands:
         result["commands"] = speed_commands.measure_commands(list(speed_commands.SYSTEMS), options.rounds, bool(python))
-    result["peak"] = {k: max(x, again) for (k, x), again in zip(result["peak"].items(), measure_peak().values())}  # disturbed less
+    result["peak"] = {k: max(x, again) for (k, x), again in zip(result["peak"].items(), measure_peak().values())}  # the larger one was disturbed less
     result["seconds"] = time.perf_counter() - begin
     with open(options.json, "w", encoding="utf-8") as file:
         json.dump(result, file, indent=1)

@@ -1,4 +1,4 @@
-"""Cells of the speed table, level -> what a run took and how wrong it was: their comparison at equal error, and their text."""
+"""Cells of the speed table: the time and error of a run by tolerance, their comparison at equal error, and their text."""
 
 import math
 
@@ -6,13 +6,14 @@ LEVELS = ("1e-06", "1e-09", "1e-12", "1e-15")
 
 
 def good(cells):
-    """The points of a work-precision curve, by falling tolerance."""
+    """Returns the points of a work-precision curve, by falling tolerance."""
     points = [(float(level), c["us"], c["error"]) for level, c in cells.items() if "failed" not in c]
     return sorted(points, reverse=True)
 
 
 def time_at(cells, error):
-    """Microseconds to an error: the cheapest run that reaches it, or between two neighbouring tolerances, on logarithmic scales."""
+    """Returns the microseconds to reach an error: the least of the runs that reach it and of interpolations between neighbouring
+    tolerances on logarithmic scales."""
     points = good(cells)
     times = [us for _, us, e in points if e <= error]
     for (_, us0, e0), (_, us1, e1) in zip(points, points[1:]):
@@ -27,7 +28,8 @@ def least_error(cells):
 
 
 def equal_error(system, peer, level):
-    """Time of the peer over ours, where both have the error that the peer has at this tolerance; none: we do not get there."""
+    """Returns the time of the peer over that of Anholon at the error that the peer has at a tolerance; None if Anholon does not
+    reach that error."""
     cell = system["cells"].get(peer, {}).get(level)
     if not cell or "failed" in cell:
         return None
@@ -64,6 +66,6 @@ def span(values):
 
 
 def verdict(found):
-    """found: name -> a number and whether it is good enough."""
+    """Returns "met" or the goals that are missed. `found` maps names to a number and whether the number meets the goal."""
     missed = [f"{name} {number(x)}" for name, (x, well) in found.items() if not well]
     return "missed: " + ", ".join(missed) if missed else "met"

@@ -21,8 +21,8 @@ import time
 from speed_processes import ROOT, say
 
 PROGRAM = os.path.join(ROOT, "build", "anholon")
-# title -> model of bench/models, links, what is spread in sweeps, times of one long motion; without equations reduced by
-# hand there is none
+# title -> model of bench/models, links, the value that sweeps vary, the end of one long motion; None for systems without
+# equations reduced by hand
 SYSTEMS = {
     "Whipple's bicycle": ("whipple", 1, None, None),
     "disc": ("disc", 1, "phi'=6:6.25", 10_000),
@@ -38,7 +38,7 @@ def model_of(name, n):
 
 
 def start_of(name, n):
-    """Positions and velocities, coordinate by coordinate, as heyoka's side takes them."""
+    """Returns positions and velocities, coordinate by coordinate, as heyoka's side reads them."""
     done = subprocess.run(
         [PROGRAM, "simulate", *model_of(name, n), "--at", "0", "--to", "0.001", "--json", "--quiet"], capture_output=True, text=True, check=True
     )
@@ -49,7 +49,7 @@ def start_of(name, n):
 
 
 def tasks_of(title, folder):
-    """title of a task -> our command, its peers by name: command and environment."""
+    """Returns the tasks of a system by title: the command of Anholon, and command and environment of each peer by name."""
     name, n, vary, long = SYSTEMS[title]
     model = model_of(name, n)
     peer = [os.path.join(ROOT, "build", "peers", "bin", "python"), os.path.join(ROOT, "bench", "peers", "heyoka_process.py"), name, str(n)]
@@ -86,13 +86,13 @@ def tasks_of(title, folder):
 
 
 def said_to(peer, start):
-    """What a peer reads on standard input: the start, and of CVODE's worker one request for a single run."""
+    """Returns the standard input of a peer: the initial state, and for CVODE's worker also the request for one run."""
     return "".join(f"{x!r}\n" for x in start) + f"run {1e-12} 0\n" if peer == "CVODE" else json.dumps(start)
 
 
 def seconds(command, start="", environment=None):
     begin = time.perf_counter()
-    # Our program keeps no code on disk here, and neither does heyoka.
+    # Anholon keeps no machine code on disk here, nor does heyoka.
     environment = {**os.environ, "ANHOLON_CACHE": "", **(environment or {})}
     done = subprocess.run(command, input=start, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment, check=False)
     took = time.perf_counter() - begin
@@ -102,7 +102,7 @@ def seconds(command, start="", environment=None):
 
 
 def measure_commands(systems, rounds, peers):
-    """system -> rows: task, seconds of ours, seconds of each peer."""
+    """Returns rows by system: task, seconds of Anholon, seconds of each peer."""
     result = {}
     for title in systems:
         start = start_of(*SYSTEMS[title][:2])

@@ -12,7 +12,7 @@ def vector_peak(result):
 
 
 def gigaflops(cell):
-    """Of the kernel alone: its plan counts a multiplication and an addition as one, the peak as two."""
+    """Returns the GF/s of the kernel alone. The plan counts a multiplication with an addition as one operation, the peak as two."""
     return 2 * cell["work"] * cell["by_kernel"] / cell["us"] / 1e3
 
 
@@ -46,7 +46,7 @@ def ensembles(result):
 
 
 def lanes_checked(result):
-    """What to believe of the lanes: how far they end from the same motions alone."""
+    """Returns a text on the accuracy of the lanes: their distance from the same motions computed alone."""
     cells = [(t, level, c) for t, b in ensembles_of(result).items() for level, c in b["cells"]["own"].items()]
     good_ones = [c for _, _, c in cells if "failed" not in c]
     text = []

@@ -1,4 +1,4 @@
-"""What bench/speed.py measures in processes of their own: the peak, growth with n, start-up, ensembles by one thread and by two."""
+"""Measurements of bench/speed.py in separate processes: the peak, growth with n, start-up, ensembles by one thread and by two."""
 
 import json
 import os
@@ -8,7 +8,7 @@ import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 GROWTH = (4, 8, 16, 32, 64, 128, 256, 500, 1000)
-# Ensembles: title -> model of bench/models, options, what is varied.
+# Ensembles: title -> model of bench/models, options, the variation.
 SWEEPS = {"sleigh": ("sleigh", (), "th~uniform(0,1)"), "chain 8": ("chain", ("--set", "n=8"), "th[1]~uniform(0,0.5)")}
 
 
@@ -17,13 +17,13 @@ def say(*words):
 
 
 def measure_peak():
-    """What a core can do, in GF/s."""
+    """Measures the peak of a core in GF/s."""
     command = [os.path.join(ROOT, "build", "release", "speed_bench"), "--peak"]
     return json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
 
 
 def measure_growth(limit, form):
-    """Chains of more and more links: five steps each, in a process of its own."""
+    """Measures five steps of chains of more and more links, each in a process of its own."""
     rows = []
     for n in GROWTH:
         model = [os.path.join(ROOT, "bench", "models", "chain.toml"), "--set", f"n={n}", *form]
@@ -44,7 +44,7 @@ def measure_growth(limit, form):
 
 
 def measure_startup(program, repeat=3):
-    """From the start of the process to its end, of each shipped model."""
+    """Measures the time from the start of a process to its end for each shipped model."""
     listing = json.loads(subprocess.run([program, "models", "--json"], capture_output=True, text=True, check=True).stdout)
     rows = []
     for model in [m["name"] for m in listing]:
@@ -60,7 +60,7 @@ def measure_startup(program, repeat=3):
 
 
 def sweep_seconds(program, sweep, cases, threads):
-    """Wall time and time on all cores."""
+    """Returns the wall time of a sweep and its time on all cores, s."""
     name, options, vary = sweep
     model = os.path.join(ROOT, "bench", "models", name + ".toml")
     command = [program, "sweep", model, *options, "--vary", vary, "-n", str(cases), "--threads", str(threads), "--quiet"]
@@ -74,11 +74,11 @@ def sweep_seconds(program, sweep, cases, threads):
 
 
 def measure_threads(program, rounds, seconds=3):
-    """The same sweep by one thread and by two, in turn: so many cases as one does in a few seconds."""
+    """Measures the same sweep by one thread and by two, in turn, with as many cases as one thread computes in a few seconds."""
     rows = []
     for title, sweep in SWEEPS.items():
         few = 2000
-        sweep_seconds(program, sweep, few, 1)  # keeps its machine code
+        sweep_seconds(program, sweep, few, 1)  # leaves its machine code in the cache
         cases = int(few * max(1, seconds / sweep_seconds(program, sweep, few, 1)[0]))
         row = {"model": title, "cases": cases, "load": os.getloadavg()[0]}
         for _ in range(rounds):

@@ -1,4 +1,4 @@
-"""Markdown of what bench/speed.py measured: at equal tolerance, at equal error, against the goals."""
+"""The Markdown report on measurements of bench/speed.py: at equal tolerance, at equal error, and against the goals."""
 
 import math
 
@@ -8,7 +8,7 @@ from speed_ensembles import ensembles, ensembles_of, gain_by_threads, gigaflops,
 BEGIN, END = "<!-- speed: begin (bench/speed.py --write) -->", "<!-- speed: end -->"
 SMALL = ("sleigh", "disc", "trailers 3")
 CHAINS = tuple(f"chain {n}" for n in (4, 8, 16, 32, 64))
-# what, systems, peer, level -> least ratio of times at equal error; ENSEMBLE_GOALS: of neighbours in the lanes of one core
+# (name, systems, peer, {level: least ratio of times at equal error}); ENSEMBLE_GOALS are for motions in the lanes of one core
 GOALS = [
     ("small systems against heyoka", SMALL, "heyoka", {"1e-06": 1.0, "1e-09": 1.2, "1e-12": 1.4, "1e-15": 1.4}),
     ("trailers 10 against heyoka", ("trailers 10",), "heyoka", dict.fromkeys(LEVELS, 1.5)),
@@ -21,7 +21,7 @@ ENSEMBLE_GOALS = [
     ("ensembles: small systems against heyoka's batch", SMALL, "heyoka", dict.fromkeys(LEVELS[:3], 1.5)),
     ("ensembles: chains against heyoka's batch", CHAINS, "heyoka", dict.fromkeys(LEVELS[:3], 4.0)),
 ]
-# systems -> least part of the vector peak, at some tolerance
+# (name, systems, least part of the vector peak, at the best tolerance)
 PEAK_GOALS = [("small systems", SMALL, 0.5), ("large systems", ("trailers 10", *CHAINS), 0.3)]
 THREADS_GOAL = 1.9
 
@@ -43,7 +43,7 @@ def times(result):
 
 
 def goals_of(goals, systems):
-    """Rows of the table; systems: title -> what has the cells."""
+    """Returns rows of the table of goals. `systems` maps titles to objects with cells."""
     rows = []
     for what, titles, peer, levels in goals:
         there = [t for t in titles if t in systems]
@@ -80,8 +80,8 @@ def goals(result):
 
 
 def flops_per_step(setup, order):
-    """Multiplications and additions of a step, estimated from the counts of the program: a product of series of order p is
-    (p+1)(p+2)/2 of both, a function two products, a linear slot an addition per order. Solving is not counted."""
+    """Returns the multiplications and additions of a step, estimated from the counts of the program: a product of series of order p has
+    (p+1)(p+2)/2 of each, a function counts as two products, a linear slot has an addition per order. Solving is not counted."""
     series = (order + 1) * (order + 2)
     return (setup["products"] + 2 * setup["functions"]) * series + setup["linear"] * (order + 1)
 
@@ -134,7 +134,7 @@ TWINS = {"chaplygin-sleigh": "sleigh", "disc": "disc", "trailers": "trailers 3",
 
 
 def compilation(system, level="1e-12"):
-    """The shortest of heyoka's at the tolerance that `simulate` has without being told."""
+    """Returns the shortest compilation time of heyoka at the default tolerance of `simulate`."""
     return min((m["jit"] for m in system.get("heyoka_modes", {}).get(level, {}).values()), default=None)
 
 
@@ -235,7 +235,7 @@ Extrapolation in __float128, change from 100 to 200 steps (distance of our own m
 
 
 def put(text, path):
-    """Between the marks of the file, or at its end."""
+    """Writes the text between the marks of a file, or at its end."""
     with open(path, encoding="utf-8") as file:
         old = file.read()
     before, mark, rest = old.partition(BEGIN)
@@ -245,7 +245,7 @@ def put(text, path):
 
 
 def self_test():
-    """The rules of comparison on curves known in closed form: time = 100 error^(-1/10)."""
+    """Checks the rules of comparison on curves in closed form: time = 100 error^(-1/10)."""
     import os
     import tempfile
 

@@ -23,7 +23,7 @@ COMMITS = 400
 
 
 def sweep(program, folder, cases, chunk):
-    """The CPU time of a sweep in a folder, s."""
+    """Returns the CPU time of a sweep in a folder, s."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     words = ["sweep", "disc", "--vary", f"phi'=1:7:{cases}", "--to", "3", "--chunk", str(chunk), "--error-estimate", "never", "--quiet"]
     subprocess.run([program, *words, "--threads", "1", "-o", f"{folder}/"], check=True)
@@ -52,7 +52,7 @@ def commits(task):
 
 def commits_per_second(place, processes):
     with tempfile.TemporaryDirectory(dir=place) as folder, ProcessPoolExecutor(processes) as pool:
-        list(pool.map(abs, range(processes)))  # begins the processes
+        list(pool.map(abs, range(processes)))  # starts the processes
         begin = time.perf_counter()
         list(pool.map(commits, [(folder, k * COMMITS) for k in range(processes)]))
         return processes * COMMITS / (time.perf_counter() - begin)
@@ -63,7 +63,7 @@ def bytes_of(folder):
 
 
 def scheduler_seconds_per_task():
-    """CPU time of Dask's scheduler for a task like that of a part; None without Dask."""
+    """Returns the CPU time of Dask's scheduler for a task such as that of a part; None without Dask."""
     try:
         from distributed import Client, LocalCluster
     except ImportError:

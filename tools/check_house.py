@@ -35,7 +35,7 @@ def code_of(text):
 
 
 def members(body):
-    """The data members declared at the top of a class body."""
+    """Returns the data members that are declared directly in a class body."""
     flat, depth = [], 0
     for c in body:
         if c in "{(":
@@ -60,7 +60,7 @@ def members(body):
 
 
 def shapes(text):
-    """Classes and functions of a text: ("class", line, name, members) and ("function", line, name, lines)."""
+    """Yields the classes and functions of a text: ("class", line, name, members) and ("function", line, name, lines)."""
     code = code_of(text)
     stack, begin = [], 0
     for brace in re.finditer(r"[{}]", code):
@@ -114,7 +114,7 @@ def units(root):
 
 
 def circles(graph):
-    """The strongly connected components with more than one unit."""
+    """Returns the strongly connected components with more than one unit."""
     index, low, stack, on, found, order = {}, {}, [], set(), [], [0]
 
     def visit(v):
@@ -203,7 +203,7 @@ def self_test():
 
 
 def debts(root):
-    """What is allowed for now: {(kind, place without its line, name): size}."""
+    """Reads the sizes that are allowed for the present: {(kind, place without its line, name): size}."""
     path = root / "tools" / "house_debts.txt"
     if not path.exists():
         return {}
@@ -212,7 +212,7 @@ def debts(root):
 
 
 def unpaid(root):
-    """The problems that no debt covers, and the debts that are paid."""
+    """Yields the problems that no debt covers, and the debts that are paid."""
     left = debts(root)
     for kind, where, name, size in check(root):
         key = (kind, where.rsplit(":", 1)[0], name)

@@ -11,7 +11,7 @@ import sys
 
 from checking import run, tree
 
-# The rooms of a layer are layers themselves: "modelfile/text" is src/modelfile/text/.
+# Subfolders of a layer are layers themselves: "modelfile/text" is src/modelfile/text/.
 LEVEL = {
     "base": 0, "base/platform": 0.1, "numeric/random": 0.9, "numeric": 1, "expr": 2, "print": 2.2, "formula": 2.5, "tape": 3, "model": 4,
     "modelfile/language": 5, "modelfile/text": 5.1, "modelfile/names": 5.2, "modelfile/mechanical": 5.3,
@@ -26,14 +26,14 @@ LEVEL = {
 MODELFILE = {name for name in LEVEL if name.startswith("modelfile")}
 FORMS = {name for name in LEVEL if name.startswith("formulation/forms/")}
 
-# Layers that may see less than everything below them.
+# Layers that may include fewer layers than all below them.
 ONLY = {
     "result": {"base", "numeric"},
     "result/hdf5": {"base", "base/platform", "numeric", "result"},
     "result/parquet": {"base", "base/platform", "numeric", "result"},
     "ensemble/store": {"base", "result", "result/parquet"},
-    "proof/checker": {"base", "numeric"},  # it must not trust the simplifier
-    "jit": {"kernel", "kernel/plan", "jit/x86"},  # a module of its own
+    "proof/checker": {"base", "numeric"},  # the checker must not depend on the simplifier
+    "jit": {"kernel", "kernel/plan", "jit/x86"},  # it is a module of its own
     "jit/x86": {"kernel"},
     "plot": {"base", "base/platform", "numeric", "expr", "print", "formula", "result"},
 }
@@ -60,7 +60,7 @@ NOT = {
     "report/page": {"jit", "jit/x86", "integrate", "integrate/series", "integrate/states"},
 } | {room: MODELFILE for room in FORMS}
 
-# header pattern, what we call it, layers that may include it, number of files in each that may
+# (pattern of headers, name of the library, layers that may include it, number of files in each layer that may)
 OUTSIDE = [
     (r"(flint/|arb|acb|arf|arith|mag\.h|ca\.h|ca_|calcium|antic|nf\.h|nf_|fmp[qz]|qqbar)", "FLINT/Arb", {"expr", "formula", "numeric"}, None),
     (r"(gmp|gmpxx|mpfr|mpf2mpfr|mpc)\.h$", "GMP/MPFR", {"expr", "formula", "numeric"}, None),
@@ -80,7 +80,7 @@ OUTSIDE = [
     (r"(gtest|gmock|benchmark)/", "a test library", set(), None),
 ]  # fmt: skip
 
-# What the commands say goes through one file, which shows what would steer a terminal.
+# Commands print by one file, which makes control characters visible that would act on a terminal.
 SAYING = re.compile(r"\b(?:std::)?(printf|fprintf|vfprintf|puts|fputs|putchar|fputc|fwrite|cout|cerr|clog)\b")
 SAYS = ("cli/say.cpp", "cli/say.h")
 
@@ -88,17 +88,17 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 SOURCES = {".h", ".hpp", ".cpp", ".c", ".def", ".inc"}
 
 
-# Comments, strings and characters, which hold braces of no meaning.
+# Comments, strings and characters, whose braces have no meaning.
 NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![0-9A-Fa-f])\'(?:\\.|[^\'\\\n])\'', re.S)
 TYPE = re.compile(r"(?:^|[;}>\s])(?:struct|class|union|enum(?:\s+class)?)\s+(?:\[\[\w+\]\]\s*)?(\w+)(?:\s+final)?\s*(?::[^:;][^;]*)?$")
 NAMESPACE = re.compile(r"(?:^|[;}\s])(?:inline\s+)?namespace(?:\s+([\w:]+))?\s*$")
 
 
 def types(text):
-    """The types that a text defines at the scope of a namespace with a name: (line, qualified name)."""
+    """Yields the types that a text defines at the scope of a named namespace: (line, qualified name)."""
     text = NO_CODE.sub(lambda m: "\n" * m[0].count("\n"), text)
     text = re.sub(r"^\s*#(?:[^\n\\]|\\.|\\\n)*", "", text, flags=re.M)
-    scopes = []  # the name of a namespace, "" for one without, None for any other brace
+    scopes = []  # the name of a namespace, "" for an unnamed one, None for any other brace
     begin = 0
     for brace in re.finditer(r"[{}]", text):
         if brace[0] == "}":
@@ -118,7 +118,7 @@ def types(text):
 
 
 def same_names(sources):
-    """The program is linked from all files: two types of one name share their functions, one of them wrongly."""
+    """Yields types that are defined twice. The program is linked from all files, so two types of one name would share functions."""
     places = {}
     for path, name in sources:
         for line, of in types(path.read_text(encoding="utf-8")):
@@ -134,7 +134,7 @@ def may_include(layer):
 
 
 def layer_of(path):
-    """The layer of "a/b/file.h": the longest of its folders that is one; None if there is none."""
+    """Returns the layer of "a/b/file.h", its longest folder that is a layer; None if there is none."""
     folder = path.rpartition("/")[0]
     while folder and folder not in LEVEL:
         folder = folder.rpartition("/")[0]
@@ -214,7 +214,7 @@ GOOD = {
     "include/anholon/api.h": "#include <vector>\n",
     "src/cli/say.cpp": "void f() { std::fwrite(text, 1, 1, stdout); }\n",
     "src/cli/typed_words.cpp": 'const char* kText = "std::printf";  // not fputs\nint n = std::snprintf(buffer, 1, "x");\n',
-    # The same names where they are different types.
+    # These types have the same name in different scopes and are allowed.
     "src/kernel/plan.h": "namespace anholon {\nstruct Entry {\n  struct Place {};\n};\ntemplate <> struct Of<int> {};\n}\n",
     "src/simulation/plan.cpp": "namespace anholon {\nnamespace {\nstruct Entry {};\n}\nstruct Entry;\nstruct Own { struct Place {}; };\n}\nnamespace anholon::cli {\nclass Entry {};\n}\n",
 }

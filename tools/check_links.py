@@ -13,7 +13,7 @@ import urllib.parse
 
 from checking import run, tree
 
-SKIPPED = {"node_modules", "shared"}  # and folders whose names begin with "." or "build"
+SKIPPED = {"node_modules", "shared"}  # folders whose names begin with "." or "build" are skipped, too
 
 FENCE = re.compile(r"^ {0,3}(```+|~~~+)")
 CODE = re.compile(r"(`+)(?!`).*?(?<!`)\1(?!`)")
@@ -26,7 +26,7 @@ SCHEME = re.compile(r"^(?:[a-zA-Z][a-zA-Z0-9+.-]*:|//)")
 
 
 def lines_of_text(text):
-    """(line number, line) of all lines outside of fenced code."""
+    """Yields (line number, line) of all lines outside of fenced code."""
     fence = None
     for number, line in enumerate(text.splitlines(), 1):
         mark = FENCE.match(line)
@@ -40,7 +40,7 @@ def lines_of_text(text):
 
 
 def slug(heading):
-    """The anchor that GitHub gives a heading."""
+    """Returns the anchor that GitHub gives a heading."""
     heading = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading)
     return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
 

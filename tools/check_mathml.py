@@ -14,7 +14,7 @@ import xml.etree.ElementTree
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SPACE = "{http://www.w3.org/1998/Math/MathML}"
 WITH_EVERYTHING = ["zoo/chaplygin-sleigh", "zoo/second-order-linear", "zoo/variable-mass-pendulum", "papers/luo-zhao-example-2"]
-# Children of each element; None: any number.
+# The number of children of each element; None for any number.
 CHILDREN = {
     "math": 1, "mtable": None, "mtr": None, "mtd": None, "mrow": None, "msqrt": None, "mfrac": 2, "msup": 2, "msub": 2,
     "mover": 2, "mi": 0, "mn": 0, "mo": 0, "mtext": 0, "mspace": 0,
@@ -22,14 +22,14 @@ CHILDREN = {
 
 
 def problems(text):
-    """-> what is wrong with it, as sentences"""
+    """Returns the errors of a MathML text as sentences."""
     try:
         root = xml.etree.ElementTree.fromstring(text)
     except xml.etree.ElementTree.ParseError as error:
         return [f"not well-formed: {error}"]
     found = []
     for table in root.iter(SPACE + "mtable"):
-        columns = 3 if table in list(root) else 2  # equations; the branches of a choice
+        columns = 3 if table in list(root) else 2  # a table of equations has 3 columns, one of the branches of a choice 2
         found += [f"a row of {len(row)} cells among {columns} columns" for row in table if len(row) != columns]
     for element in root.iter():
         name = element.tag.removeprefix(SPACE)
@@ -50,7 +50,7 @@ def main():
         print("the check accepts a fraction without denominator")
         return 1
     failed = 0
-    # derive refuses a model with contacts.
+    # `derive` refuses models with contacts.
     models = [m for m in sorted((ROOT / "models").glob("*/*.toml")) if m.parent.name != "contacts"]
     cases = [(model, []) for model in models]
     cases += [(ROOT / "models" / f"{name}.toml", ["--form", "all", "--steps", "--reactions"]) for name in WITH_EVERYTHING]

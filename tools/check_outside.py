@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 
-# The programs of doc/library.md, each with what it prints
+# A program of doc/library.md and its output
 EXAMPLE = re.compile(r"```cpp\n(.*?)```\n\n```text\n(.*?)```", re.S)
 
 

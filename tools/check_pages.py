@@ -16,18 +16,18 @@ from checking import run, tree
 KEY = re.compile(r'\bkey\("([A-Za-z_]\w*)"\)')
 OUTCOME = re.compile(r'return "([a-z_]+)"')
 ELSEWHERE = ("src/report/", "src/modelfile/language/")
-STILL = "src/report/equations"  # of src/report/: the JSON of `derive`
+STILL = "src/report/equations"  # the JSON of `derive`, the only part of src/report/ that is checked
 PUBLIC = re.compile(  # a type or a function of a header, outside of classes
     r"^(?:template <[^\n]*\n)?(?:class|struct|enum class)(?: \[\[nodiscard\]\])?(?: ANHOLON_API)? (\w+)[^;\n]*[{:]|^(?:ANHOLON_API|inline) [^\n;(]*?(\w+)\(", re.M)
 
 
 def in_code(text):
-    """The words of a page that stand between backticks."""
+    """Returns the words of a page between backticks."""
     return set(re.findall(r"[\w.]+", " ".join(re.findall(r"`([^`\n]+)`", text))))
 
 
 def check_library(root):
-    """A problem for each header, type and function that the row of its header in doc/library.md does not name."""
+    """Returns a problem for each header, type and function that the row of its header in doc/library.md does not name."""
     rows = dict(re.findall(r"^\| \[`(\w+\.h)`\]\S* \|(.*)$", (root / "doc/library.md").read_text(encoding="utf-8"), re.M))
     problems = []
     for header in sorted((root / "include/anholon").glob("*.h")):
@@ -39,7 +39,7 @@ def check_library(root):
 
 
 def check_commands(root):
-    """A problem for each command whose help stands in doc/commands.md and that its first table does not have."""
+    """Returns a problem for each command whose help is in doc/commands.md, but not in its first table."""
     page = (root / "doc/commands.md").read_text(encoding="utf-8")
     first = [re.sub(r" (?:\[?[A-Z]{2,}.*)$", "", call) for row in re.findall(r"^\|((?:[^|\\]|\\.)*)\|", page, re.M) for call in re.findall(r"`([^`]+)`", row)]
     return [f"doc/commands.md: its table does not have {name}" for name in re.findall(r"^###+ `anholon ([a-z ]+)`$", page, re.M) if name not in first]

@@ -19,11 +19,11 @@ THEORY = re.compile(r"\(theory: ?([\w.-]+)\)")
 HEADING = re.compile(r"^#+\s+(.*?)\s*#*\s*$")
 FOLDERS = ("src", "test", "doc")
 SUFFIXES = {".h", ".cpp", ".def", ".py", ".md"}
-EXAMPLE = "(theory: name)"  # how a page is cited
+EXAMPLE = "(theory: name)"  # an example of a citation, which is not checked
 
 
 def expand(numbers):
-    """'2.8–2.10, 3' -> 2.8 2.9 2.10 3; a range whose ends do not match gives its ends."""
+    """Yields the numbers of a list with ranges: '2.8–2.10, 3' -> 2.8 2.9 2.10 3. Of a range whose ends do not match, yields the ends."""
     for part in re.split(r"\s*,\s*", numbers):
         ends = re.split(r"\s*[–-]\s*", part)
         first, last = ends[0], ends[-1]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The version is written in CMakeLists.txt; the program and CITATION.cff have the same one.
+"""Checks that the program and CITATION.cff have the version of CMakeLists.txt.
 
 usage: check_version.py PROGRAM
 """

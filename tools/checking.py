@@ -1,4 +1,4 @@
-"""What the checks of this folder share: their command line, and the small trees of files on which they are tried."""
+"""The common parts of the checks of this folder: their command line, and small trees of files for their self-tests."""
 
 import argparse
 import contextlib
@@ -7,11 +7,11 @@ import tempfile
 
 
 def run(doc, judge, self_test):
-    """Judges a tree from the command line, or tries the check itself; returns the exit status.
+    """Runs a check on a tree, or its self-test, from the command line; returns the exit status.
 
-    doc        the text of the module, whose first line is the help
-    judge      root -> the problems, line by line, and a last line that sums up
-    self_test  () -> a line for each case in which the check is mistaken
+    doc        the docstring of the module, whose first line is the help
+    judge      a function of the root that returns the problems, as lines, and a summary
+    self_test  a function that yields a line for each case in which the check is mistaken
     """
     parser = argparse.ArgumentParser(description=doc.splitlines()[0])
     parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
@@ -30,7 +30,7 @@ def run(doc, judge, self_test):
 
 @contextlib.contextmanager
 def tree(files):
-    """A folder, for as long as it is used, with these files: {name: text}."""
+    """Makes a temporary folder with files {name: text}; it is removed after use."""
     with tempfile.TemporaryDirectory() as scratch:
         root = pathlib.Path(scratch) / "root"
         root.mkdir()

@@ -19,7 +19,7 @@ OPTION = re.compile(r"^  (-\S+)(?: (.*))?$")
 @dataclasses.dataclass
 class Option:
     flags: list[str]
-    value: str  # the word for its value; empty for a flag
+    value: str  # the name of the value in the help; empty for a flag
     text: str
 
 
@@ -34,7 +34,7 @@ class Command:
 
 
 def sections(text):
-    """The titled parts of a help text, and what follows them."""
+    """Returns the titled parts of a help text, and the footer."""
     parts, footer, title = {}, [], None
     for line in text.splitlines()[2:]:
         if re.fullmatch(r"(Positionals|Options|Subcommands):", line):
@@ -52,7 +52,7 @@ def sections(text):
 
 
 def entries(lines):
-    """Pairs (left column, right column) of a part; lines that begin further right go on with the text."""
+    """Returns pairs (left column, right column) of a part. A line that begins further right continues the right column."""
     found = []
     for line in lines:
         if line.startswith("    "):
@@ -64,7 +64,7 @@ def entries(lines):
 
 
 def command(program, words=""):
-    """The command that `words` name, read from its help."""
+    """Reads the command with the name `words` from its help."""
     text = subprocess.run([program, *words.split(), "--help"], capture_output=True, text=True, check=True).stdout
     parts, footer = sections(text)
     options = []
@@ -76,7 +76,7 @@ def command(program, words=""):
 
 
 def all_of(c):
-    """A command and the commands inside it."""
+    """Returns a command and all its subcommands."""
     return [c] + [each for i in c.inner for each in all_of(i)]
 
 
@@ -106,12 +106,12 @@ def manual(top, version):
 
 
 def script(program, shell):
-    """What `anholon completion` prints."""
+    """Returns the output of `anholon completion`."""
     return subprocess.run([program, "completion", shell], capture_output=True, text=True, check=True).stdout
 
 
 def check(program, top, page):
-    """Nothing of the help is missing, and bash completes words."""
+    """Asserts that page and completions have all commands and options of the help, and that bash completes words."""
     shells = {shell: script(program, shell) for shell in ("bash", "zsh", "fish")}
     plain = page.replace("\\-", "-")
     for c in all_of(top)[1:]:
@@ -121,7 +121,7 @@ def check(program, top, page):
         flags = {f for line in help_text.splitlines() if (m := OPTION.match(line)) for f in m.group(1).split(",")}
         assert flags == {f for o in c.options for f in o.flags}, (c.words, flags)
         assert all(f in block for f in flags), c.words
-        if " " not in c.words:  # zsh and fish complete the options of the first command alone
+        if " " not in c.words:  # zsh and fish complete only the options of the first command
             assert all(f"*{f}[" in shells["zsh"] and f" -l {f[2:]} " in shells["fish"] for f in flags if f.startswith("--")), c.words
         assert f'"{c.words}") words=' in shells["bash"], c.words
     with tempfile.TemporaryDirectory() as scratch:

@@ -22,7 +22,7 @@ def help_of(program, *words):
 
 
 def commands(text):
-    """Names of the commands that a help text lists."""
+    """Returns the names of the commands that a help text lists."""
     found = re.search(r"^Subcommands:\n((?:  .*\n)+)", text, re.M)
     return re.findall(r"^  ([a-z]\w*)", found[1], re.M) if found else []
 

@@ -25,9 +25,9 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SETS = (("papers", "From papers"), ("asked", "Asked and answered"), ("zoo", "Zoo"))
 TIME_LIMIT = 900
-# The proof that their forms agree takes minutes: anholon prove NAME.
+# Models whose pages have no proof, as it takes minutes: anholon prove NAME.
 NO_PROOF = set()
-# Where a motion shows best what it is; elsewhere this far through.
+# The moment of a picture: MOMENT has it for some models, the others have the usual one.
 USUAL_MOMENT = "60%"
 MOMENT = {}
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -80,7 +80,7 @@ def has_browser():
 
 
 def first_paragraph(text):
-    """The comment at the head of a model file that says what it is."""
+    """Returns the comment at the head of a model file, which describes the model."""
     lines = []
     for line in text.splitlines():
         if line.startswith("# oracle"):
@@ -98,7 +98,7 @@ def first_paragraph(text):
 
 
 def first_sentence(text):
-    # A full stop inside a name or a number, after an initial or "eq", ends nothing.
+    # A full stop inside a name or a number, after an initial or after "eq" does not end a sentence.
     end = re.search(r"(?<![A-Z])(?<!\beq)(?<!\bcf)(?<!\be\.g)(?<!\bi\.e)\.(?=\s|$)|:(?=\s+[A-Z])", text)
     sentence = text[: end.start()] if end else text
     return sentence + "." if sentence else ""
@@ -113,7 +113,7 @@ class Page:
         self.early = False
 
     def sources(self):
-        """The model and those it builds on."""
+        """Returns the files of the model and of its bases."""
         found, todo = [], [self.model]
         while todo:
             path = todo.pop()
@@ -183,7 +183,7 @@ class Page:
 
 
 def papers_page(claims, titles, version):
-    """The tables of papers/ as a page: every statement, its formula, and how it was decided when the page was made."""
+    """Returns the page of the tables of papers/: each statement, its formula, and the verdict when the page was made."""
     parts = ["<!doctype html>", '<html lang="en">', '<head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">',
              '<meta name="color-scheme" content="light dark"><title>Anholon: the papers</title>', f"<style>{STYLE}{PAPERS_STYLE}</style></head>", "<body>",
              '<header><h1>The papers, equation by equation</h1><p class="lead">What is true is proved, and a changed version of it refuted; what is false is refuted, and its '
@@ -202,7 +202,7 @@ def papers_page(claims, titles, version):
 
 
 def make_papers(program, out, version):
-    """Writes papers.html. Returns what failed."""
+    """Writes papers.html. Returns the failures."""
     words = [str(program), "papers", "--check", "--json", "--quiet"]
     done = subprocess.run(words, capture_output=True, text=True, timeout=TIME_LIMIT, stdin=subprocess.DEVNULL)
     if done.returncode not in (0, 1):
@@ -226,7 +226,7 @@ def index(sets, version, papers=False):
 
 
 def gallery(program, out, jobs, force, models, pictures, papers=False):
-    """`models`: (heading, files) of each set. Returns what failed."""
+    """Makes the gallery. `models` are pairs (heading, files). Returns the failures."""
     out.mkdir(parents=True, exist_ok=True)
     sets = [(heading, [Page(m, out) for m in files]) for heading, files in models]
     pages = [p for _, list_ in sets for p in list_]
@@ -237,7 +237,7 @@ def gallery(program, out, jobs, force, models, pictures, papers=False):
             page, done = running[future], done + 1
             try:
                 how = future.result()
-            except Exception as e:  # one page's mishap is not that of the others
+            except Exception as e:  # a page that fails must not stop the others
                 page.problems.append(f"{type(e).__name__}: {e}")
             say(f"[{done}/{len(pages)}] {page.name}: " + ("; ".join(page.problems) if page.problems else how))
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()

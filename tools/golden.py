@@ -29,7 +29,7 @@ WILD = "…"
 TIMEOUT = 600
 EXIT = re.compile(r"\[exit \d+\]|\[still running after \d+ s\]")
 FENCE = re.compile(r"^(`{3,})\s*(.*?)\s*$")
-PROGRESS = re.compile(r"^\[#*\.*\] +\d+ %  .*$")  # of long runs; whether a run is long depends on the machine
+PROGRESS = re.compile(r"^\[#*\.*\] +\d+ %  .*$")  # progress of long runs; the machine decides whether a run is long
 FIGURE = re.compile(r"!\[[^\]]*\]\(([^()\s]*figures/([\w.-]+))\)")
 
 
@@ -45,7 +45,7 @@ class Step:
 
 
 def parse(lines):
-    """-> [(name, text) to write] , [Step]"""
+    """Returns the files to write, [(name, text)], and the steps, [Step]."""
     files, steps = [], []
     at = 0
     while at < len(lines):
@@ -122,7 +122,7 @@ class Scratch:
         }  # fmt: skip
 
     def run(self, command):
-        """-> output lines, with a last [exit N] where the command failed"""
+        """Runs a command. Returns the lines of its output, with a last line [exit N] if it failed."""
         try:
             done = subprocess.run(
                 ["bash", "-o", "pipefail", "-c", command], cwd=self.work, env=self.environment,
@@ -132,14 +132,14 @@ class Scratch:
             return [f"[still running after {TIMEOUT} s]"]
         text = done.stdout.decode("utf-8", errors="backslashreplace")
         text = text.replace(str(self.work), "<scratch>").replace(str(ROOT), "<root>")
-        # Not splitlines(): that also cuts at form feeds and the like.
+        # splitlines() would also split at form feeds and similar characters.
         lines = strip_end([line for line in text.split("\n") if not PROGRESS.match(line)])
         if done.returncode != 0:
             lines.append(f"[exit {done.returncode}]")
         return lines
 
     def outputs(self):
-        """The files the commands left, by name."""
+        """Returns the files that the commands wrote, by name."""
         found = {}
         for path in sorted(self.work.rglob("*")):
             if path.is_file() and not path.is_symlink():
@@ -160,13 +160,12 @@ def line_matches(pattern, line):
 
 
 def align(expected, actual):
-    """For each actual line the index of the expected line it answers to, or None.
+    """Returns for each actual line the index of the expected line that matches it, or None; and True if all lines match.
 
-    The longest common subsequence, in which a line … may answer any number of lines. Returns also
-    whether every expected line is answered, a line … by none if need be.
+    The match is the longest common subsequence, in which an expected line … matches any number of lines, also none.
     """
     rows, columns = len(expected), len(actual)
-    # Equal ends first: the table is quadratic, transcripts mostly agree.
+    # Equal first lines are matched before, since the table has quadratic size and transcripts mostly agree.
     low = 0
     while low < min(rows, columns) and expected[low].strip() != WILD and line_matches(expected[low], actual[low]):
         low += 1
@@ -176,7 +175,7 @@ def align(expected, actual):
         for j in range(columns - 1, low - 1, -1):
             value = max(best[i + 1][j], best[i][j + 1])
             if many:
-                # Worth less than a true match, so that a … never takes what a written line could have.
+                # A match by … counts less than one by a written line, so that a … never takes a line that a written line matches.
                 value = max(value, 1 + best[i][j + 1])
             elif line_matches(expected[i], actual[j]):
                 value = max(value, 1000 + best[i + 1][j + 1])
@@ -200,8 +199,8 @@ def align(expected, actual):
 
 
 def merge(expected, actual):
-    """-> (does it match, the new expected lines: the actual ones, with the wildcards that still hold)"""
-    # Apart, so that no … can answer for an exit code.
+    """Returns True if the lines match, and the new expected lines: the actual ones with the wildcards that still match."""
+    # Exit codes are compared separately, so that no … matches one.
     expected, expected_exit = split_exit(expected)
     actual, actual_exit = split_exit(actual)
     same, merged = merge_lines(expected, actual)
@@ -215,13 +214,13 @@ def split_exit(lines):
 
 
 def with_wildcards(patterns, line):
-    """The line with the wildcards of the first pattern that it resembles, each where the text around it is the same."""
+    """Returns the line with the wildcards of the first pattern that it resembles, placed where the surrounding text is the same."""
     for pattern in patterns:
         if difflib.SequenceMatcher(None, pattern, line).ratio() < 0.6:
             continue
         parts, kept = pattern.split(WILD), line
         for index, (before, after) in enumerate(zip(parts, parts[1:])):
-            # Words and signs: the numbers beside it may have changed, too.
+            # Only words and signs around a wildcard are compared, as the numbers beside it may have changed, too.
             around = [re.escape(re.search(r"[^\d.]{0,4}$", before)[0]), re.escape(re.match(r"[^\d.]{0,4}", after)[0])]
             if index == len(parts) - 2 and len(after) <= 4:
                 around[1] += "$"
@@ -251,7 +250,7 @@ def merge_lines(expected, actual):
 
 
 def check_figures(path, text, work, bless):
-    """-> True if every figure of the page is what its commands drew; `bless` writes those that are not."""
+    """Returns True if each figure of the page is the one that its commands wrote; `bless` replaces the others."""
     good, shown = True, os.path.relpath(path, ROOT)
     for place, name in FIGURE.findall(text):
         drawn, kept = work / name, path.parent / place
@@ -270,7 +269,7 @@ def check_figures(path, text, work, bless):
 
 
 def run_case(path, program, bless, run_step=None):
-    """-> True if all is as expected. run_step(step, expected) may say 'skip' or 'code only'."""
+    """Returns True if all output is as expected. run_step(step, expected) may return 'skip' or 'code only'."""
     shown = os.path.relpath(path, ROOT)
     lines = path.read_text(encoding="utf-8").split("\n")
     files, steps = parse(lines)
@@ -323,7 +322,7 @@ def all_cases():
 
 
 def self_test():
-    """The runner must accept what is right and refuse each mutant of it."""
+    """Checks that the runner accepts a correct transcript and refuses each mutant of it."""
     fake = '#!/bin/sh\necho "took $$ s"; echo "[##........]  21 %  t = 2"; cat "$1" >&2; [ -e "$1" ] || exit 2\n'
     case = "# title\n```toml a.toml\nx = 1\n```\n```console\n$ anholon a.toml\ntook … s\nx = 1\n\n$ anholon b 2>/dev/null \\\n    && true\n…\n[exit 2]\n```\n"
     mutants = {

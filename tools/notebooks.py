@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Notebooks are written as text, python/notebooks/NAME.py, which editors open as cells; NAME.ipynb beside it is made from that text.
+"""Makes the notebooks NAME.ipynb from their texts python/notebooks/NAME.py, which editors open as cells.
 
-    notebooks.py --write       makes the .ipynb anew
-    notebooks.py               exit status 1 if one is not what its text gives
+    notebooks.py --write       writes all .ipynb anew
+    notebooks.py               exits with status 1 if a .ipynb is not the one of its text
     notebooks.py --self-test
 
 A line `# %%` begins a cell of code, `# %% [markdown]` a cell of words, whose lines are comments.
@@ -17,7 +17,7 @@ KERNEL = {"kernelspec": {"display_name": "Python 3", "language": "python", "name
 
 
 def cells(text):
-    """(kind, source) of each cell."""
+    """Returns (kind, source) of each cell."""
     found = []
     for line in text.splitlines():
         if line.startswith("# %%"):
@@ -35,7 +35,7 @@ def cells(text):
 
 
 def notebook(text):
-    """The notebook of a text, as JSON without outputs."""
+    """Returns the notebook of a text as JSON without outputs."""
     made = []
     for number, (kind, source) in enumerate(cells(text)):
         cell = {"cell_type": kind, "id": f"cell-{number}", "metadata": {}, "source": source.splitlines(keepends=True)}

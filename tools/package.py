@@ -3,8 +3,8 @@
 
     package.py FOLDER      FOLDER gets anholon_VERSION_amd64.deb, anholon-VERSION-linux-x86_64.tar.xz and SHA256SUMS
 
-The libraries are linked in from build/libraries (static_libraries.py); what stays outside is what every Debian 12 has: the C and C++ libraries.
-HDF5 and cairo (figures in PDF and PNG) are loaded where they are needed, if they are there.
+The libraries of build/libraries (static_libraries.py) are linked in. Only the C and C++ libraries, which every Debian 12 has, are not.
+HDF5 and cairo (figures in PDF and PNG) are loaded when they are needed, if they are installed.
 """
 
 import hashlib
@@ -21,7 +21,7 @@ import time
 import static_libraries
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-# The packages of Debian 12 that hold the shared libraries which may be needed
+# The shared libraries that the program may need, and their packages in Debian 12
 OUTSIDE = {
     "libc.so.6": "libc6 (>= 2.36)",
     "libm.so.6": "libc6 (>= 2.36)",
@@ -38,17 +38,17 @@ def run(*words, **options):
 
 
 def version():
-    """The version of the project, which CMakeLists.txt alone holds."""
+    """Returns the version of the project from CMakeLists.txt."""
     return re.search(r"project\(.*VERSION\s+([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")).group(1)
 
 
 def address():
-    """The address of the authors: that of the commit which is packed."""
+    """Returns the e-mail address of the author of the last commit."""
     return run("git", "-C", ROOT, "log", "-1", "--format=%ae", capture_output=True, text=True).stdout.strip()
 
 
 def needed(file):
-    """The shared libraries that a file names."""
+    """Returns the shared libraries that a file needs."""
     return set(re.findall(r"\(NEEDED\).*\[(.*)\]", run("readelf", "-d", file, capture_output=True, text=True).stdout))
 
 
@@ -72,7 +72,7 @@ def compiled(prefix, build):
 
 
 def reset(entry):
-    """The same owner and time for all files: the archive of the same files has the same bytes."""
+    """Gives all files the same owner and time, so that archives of the same files have the same bytes."""
     entry.uid = entry.gid = 0
     entry.uname = entry.gname = "root"
     entry.mtime = int(os.environ.get("SOURCE_DATE_EPOCH", "0"))
@@ -110,7 +110,7 @@ Description: equations of nonholonomic mechanical systems, their proof and motio
 
 
 def try_archive(file, scratch):
-    """From the archive to a motion and a page, in another folder than that of the build and without its environment."""
+    """Unpacks the archive in another folder and makes a motion and a page, without the environment of the build."""
     began = time.monotonic()
     with tarfile.open(file) as tar:
         tar.extractall(scratch / "moved here")
@@ -123,7 +123,7 @@ def try_archive(file, scratch):
 
 
 def try_in_root(deb, scratch):
-    """Unpacks the package into a root that has the declared libraries and nothing else, and runs the program in it."""
+    """Unpacks the package into a root with the declared libraries only, and runs the program in it."""
     root = scratch / "root"
     run("dpkg-deb", "-x", deb, root)
     for name in OUTSIDE:
@@ -139,7 +139,7 @@ def try_in_root(deb, scratch):
     environment = {"ANHOLON_CACHE": "", "PATH": os.environ["PATH"]}
     for words in (["simulate", "disc", "--to", "2000", "--at", "2000", "-o", "/tmp/disc.csv"], ["report", "disc", "--to", "1", "--quiet", "-o", "/tmp/disc.html"]):
         run("unshare", "-rmpf", "sh", "-c", script, "sh", *words, env=environment, stderr=subprocess.DEVNULL)
-    # Without /proc the program finds the shipped models as well.
+    # The program must find the shipped models without /proc, too.
     run("unshare", "-r", "chroot", root, "/usr/bin/anholon", "check", "disc", env=environment, stdout=subprocess.DEVNULL)
     assert (root / "tmp" / "disc.csv").stat().st_size > 50 and (root / "tmp" / "disc.html").stat().st_size > 100_000
 

@@ -27,7 +27,7 @@ def told(program, *words):
 
 
 def anchors(text):
-    """The names of a page's headings, as GitHub makes them."""
+    """Returns the anchors of a page's headings as GitHub makes them."""
     headings = re.findall(r"^#+ +(.*?) *#*$", text, re.M)
     return {re.sub(r"[^\w\- ]", "", h.replace("`", "").lower()).strip().replace(" ", "-") for h in headings}
 

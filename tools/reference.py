@@ -48,7 +48,7 @@ class Checker:
 
 
 def blocks(text):
-    """-> [(line number, info, text, kind of the line after it)]"""
+    """Returns the fenced blocks: [(line number, info, text, kind of the line after the block)]."""
     lines, found, at = text.split("\n"), [], 0
     while at < len(lines):
         if lines[at].startswith("```"):
@@ -96,7 +96,7 @@ def check_examples(c, text, name="language.md"):
 
 
 def check_decisions(c, text):
-    """The table of formulas whose meaning is decided: their values along a motion at rest."""
+    """Checks the values in the table of formulas whose meaning is decided, along a motion at rest."""
     table = text.split("### Decided")[1].split("\n###")[0]
     rows = re.findall(r"^\| `(.+?)` \| ([-\d.e]+) \|", table, re.M)
     model = next(body for _, info, body, _ in blocks(text) if info == ["toml", "model.toml"])
@@ -114,7 +114,7 @@ def check_decisions(c, text):
 
 
 def check_keys_used(c, text):
-    """Each key in a table of keys stands in an example of its section, or in the example of another one."""
+    """Checks that each key in a table of keys occurs in an example of its section or of another one."""
     examples = "\n".join(body for _, info, body, _ in blocks(text) if info[:1] == ["toml"])
     for table in re.findall(r"^\| key \| \| \|\n\|---\|---\|---\|\n((?:\|.*\n)+)", text, re.M):
         for key in re.findall(r"^\| `([^`]+)`", table, re.M):
@@ -129,7 +129,7 @@ KNOWN = {"$schema", "title", "description", "type", "enum", "anyOf", "properties
 
 
 def misfit(schema, value, path="model"):
-    """The first place where the value does not fit; the words of JSON Schema that the schema uses, and no others."""
+    """Returns the first place at which the value does not fit; knows only the words of JSON Schema that the schema uses."""
     if schema is True:
         return None
     if schema is False:
@@ -177,7 +177,7 @@ SLIPS = [
 def check_schema(c, models):
     schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     try:
-        import jsonschema  # where it is installed it judges, too
+        import jsonschema  # if it is installed, it checks the schema, too
 
         jsonschema.Draft7Validator.check_schema(schema)
         judge = jsonschema.Draft7Validator(schema)
@@ -213,7 +213,7 @@ def check_format(c, models):
             after = (folder / path).read_text(encoding="utf-8")
             if tomllib.loads(after) != tomllib.loads(text):
                 c.problem(f"{name}: fmt changes what it says")
-            # The marks of comments may stand in texts as well; their number must not change anyway.
+            # Only spaces and commas may change, in comments as well.
             if re.sub(r"\s", "", after.replace(",", "")) != re.sub(r"\s", "", text.replace(",", "")):
                 c.problem(f"{name}: fmt changes more than blanks and commas")
         code, out, err = c.run("fmt", "--check", *names, folder=folder)
@@ -248,7 +248,7 @@ def check_templates(c):
 
 
 def self_test(c):
-    """Each of these must be found wrong."""
+    """Checks that each of some mutants of the page is refused."""
     text = PAGE.read_text(encoding="utf-8")
     mutants = {
         "a good example with a slip": text.replace('equation = "dot(vel(P), B.y) = 0"', 'equation = "dot(vel(P), B.q) = 0"', 1),

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Runs the same transcripts with programs by two compilers; every bit printed or written must agree.
+"""Runs the same transcripts with the programs of two compilers; their output and files must agree bit by bit.
 
 usage: same_bits.py PROGRAM OTHER
 
 Cases: test/golden/good/*.md and test/determinism/*.md (the latter need no expected output), and the equations of every
-shipped model. Lines that a … of the case answers for, such as timings, are not compared. Exit code 77: OTHER is not built.
+shipped model. Lines that match a … of the case, such as timings, are not compared. The exit code is 77 if OTHER is not built.
 """
 
 import difflib
@@ -33,7 +33,7 @@ def transcript(path, program):
 
 
 def is_certificate(text):
-    """The nodes of a certificate are numbered in the order in which a compiler evaluates operands; what they say is the same."""
+    """True for a certificate. Its nodes are numbered in the order in which a compiler evaluates operands, which may differ."""
     text = text.decode("utf-8", "replace") if isinstance(text, bytes) else text or ""
     return '"anholon-certificate"' in text[:200]
 
@@ -43,7 +43,7 @@ def equations(model, program):
 
 
 def models_that_differ(program, other):
-    """The shipped models whose equations the two programs write in different ways; the differences are printed."""
+    """Returns the shipped models whose equations the two programs write differently, and prints the differences."""
     models = sorted((golden.ROOT / "models").rglob("*.toml"))
     found = []
     for model in models:

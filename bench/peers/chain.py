@@ -27,7 +27,7 @@ METHODS = ("lagrange", "kane")
 
 
 def chain_model(n):
-    """The same text as test/support/chain.h writes."""
+    """Returns the text that test/support/chain.h writes, too."""
     links = range(1, n + 1)
     coordinates = ", ".join(f'"a{i}"' for i in links)
     points = "".join(
@@ -107,7 +107,7 @@ def run_sympy(method, n, limit):
 
 
 def best(measure, patience=10.0, most=7):
-    """The best of several runs: as many as fit into some seconds, at least one."""
+    """Returns the best of several runs: as many as fit into some seconds, at least one."""
     results, begin = [], time.perf_counter()
     while len(results) < most and (not results or time.perf_counter() - begin < patience):
         results.append(measure())

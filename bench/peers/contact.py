@@ -54,8 +54,8 @@ z = "R"
 "phi'" = -30
 """
 
-# Slide joints and a hinge keep the plane; a contact is that of one sphere with the floor. Friction of two geoms is the
-# larger one of theirs.
+# Slide joints and a hinge keep the body in the plane; a contact is that of a sphere with the floor. MuJoCo takes the larger
+# friction of the two geoms.
 WORLD = """<mujoco>
   <option timestep="{h}" gravity="0 0 -9.81" cone="elliptic" impratio="1000" integrator="{integrator}" tolerance="1e-14" iterations="200"/>
   <worldbody>
@@ -69,7 +69,7 @@ HINGE = '<joint type="hinge" axis="0 1 0"/>'
 
 
 def anholon(program, text, to, columns):
-    """The last row of a motion."""
+    """Returns the last row of a motion."""
     with tempfile.TemporaryDirectory() as folder:
         model = Path(folder) / "model.toml"
         model.write_text(text)
@@ -84,7 +84,7 @@ def anholon(program, text, to, columns):
 
 
 def mujoco_plane(mujoco, h, mu, hinge, velocities, to):
-    """Position and velocity along x, the rate of turning if there is a hinge, and the greatest height of the flight."""
+    """Returns position and velocity along x, the angular velocity if there is a hinge, and the greatest height of the flight."""
     stiff = 2 * h
     bodies = PLANE_BODY.format(hinge=HINGE if hinge else "", mu=mu, stiff=stiff)
     text = WORLD.format(h=h, mu=mu, bodies=bodies, stiff=stiff, integrator="Euler")
@@ -105,7 +105,7 @@ def block_exact(t):
 
 
 def ball_exact(t):
-    """Back-spin: the ball slips until 2 (v - R w)/(7 mu g), where w = -30 turns against the motion, then rolls."""
+    """Returns the motion of a ball with back-spin: it slips until 2 (v - R w)/(7 mu g), then rolls; w = -30 turns against the motion."""
     v, w, radius, mu = 2, -30, 0.1, 0.3
     end = 2 * (v - radius * w) / (7 * mu * G)
     slip = min(t, end)

@@ -47,7 +47,7 @@ def rows(worker, time, every, file):
 
 
 def spread(worker, cases):
-    """The starts: the last velocity differs."""
+    """Returns initial states that differ in the last velocity."""
     starts = np.repeat(worker.start[:, None], cases, axis=1)
     starts[-1] += np.linspace(0.0, SPREAD, cases)
     return starts

@@ -80,7 +80,7 @@ class Trailers:
         self.names = ["x", "y", "ph", *(f"th{i}" for i in range(n + 1)), "p", "s"]
 
     def root(self, f, th, t):
-        """The root of 1/I from the last trailer on, cosines and sines at the hitches."""
+        """Returns the root of 1/I, computed from the last trailer on, with cosines and sines at the hitches."""
         M0, J0, M, J, d = 10.0, 2.0, 3.0, 0.75, 0.875
         c, s, behind = [], [], 0.0
         for i in range(1, self.n + 1):
@@ -160,7 +160,7 @@ class Worker:
         self.integrators = {}
 
     def made(self, key, make):
-        """An integrator, the seconds of its first compilation, and of making it now."""
+        """Returns an integrator, the seconds of its first compilation, and the seconds of making it now."""
         if key not in self.integrators:
             begin = clocks(time.process_time)
             integrator = make()
@@ -169,7 +169,7 @@ class Worker:
         return self.integrators[key]
 
     def first_seconds(self, key, now):
-        """heyoka keeps what it compiled in a folder; how long that took is kept beside it."""
+        """Returns the seconds of the first compilation, which are kept in a file in the folder of heyoka's cache."""
         folder = os.environ.get("HEYOKA_CACHE_DIR")
         if not folder:
             return now
@@ -246,13 +246,13 @@ def clocks(core=time.thread_time):
 
 
 def since(begin, core=time.thread_time):
-    """The smaller of wall time and time on the core, as in stopwatch.h."""
+    """Returns the smaller of wall time and time on the core, as stopwatch.h does."""
     wall = time.perf_counter() - begin[1]
     return min(wall, core() - begin[0])
 
 
 def measure(reset, go, seconds, steps_of):
-    """Median seconds of a run, less those of a call that finds itself at the end."""
+    """Returns the median seconds of a run, without those of a call that is at its end already, and the steps."""
     times, calls, begin = [], [], time.perf_counter()
     while not times or time.perf_counter() - begin < seconds:
         reset()
@@ -263,7 +263,7 @@ def measure(reset, go, seconds, steps_of):
         started = clocks()
         go()
         calls.append(since(started))
-    # The least of the calls: a disturbed one would make the run look shorter than it is.
+    # The least time of the calls is subtracted, as a disturbed one would make the run look too short.
     return statistics.median(times) - min(calls), steps
 
 
@@ -274,7 +274,7 @@ def main():
         command, *words = json.loads(line)
         try:
             answer = {"modes": list(MODES), "version": hy.__version__} if command == "modes" else getattr(worker, command)(*words)
-        except Exception as error:  # what heyoka cannot do is a line of the table
+        except Exception as error:  # a failure of heyoka is an answer, too
             answer = {"failed": f"{type(error).__name__}: {error}"}
         print(json.dumps(answer), flush=True)
 

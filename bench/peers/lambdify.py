@@ -23,7 +23,7 @@ import sympy.physics.mechanics as me
 
 
 def kane():
-    """The method, its states, and values of its parameters."""
+    """Returns the method, its states, and values of its parameters."""
     q = me.dynamicsymbols("q1:4")
     u = me.dynamicsymbols("u1:4")
     r, m, g = sm.symbols("r m g")
@@ -49,13 +49,13 @@ def explicit(method, states, values):
 
 
 def solved(method, states, values):
-    """mass_matrix_full x' = forcing_full, solved in numbers."""
+    """Returns the function that solves mass_matrix_full x' = forcing_full in numbers."""
     matrix, forcing = (sm.lambdify(states, x.subs(values), "numpy", cse=True) for x in (method.mass_matrix_full, method.forcing_full))
     n = len(states)
 
     def f(*y):
         shape = np.shape(y[0])
-        # Entries that are constants come out as numbers.
+        # lambdify returns constant entries as numbers, not as arrays.
         m, b = np.empty((*shape, n, n)), np.empty((*shape, n))
         for i, row in enumerate(np.array(matrix(*y), dtype=object) if shape else matrix(*y)):
             for j, x in enumerate(row):
@@ -72,21 +72,21 @@ MODELS = ("disc", "chaplygin-sleigh", "trailers", "snakeboard", "rolling-coin", 
 
 
 def same_rates(name, states):
-    """The generated rates of a model against lambdify of the same ones: a line of the table."""
+    """Compares the generated rates of a model with lambdify of the same rates; prints a line of the table."""
     model = an.load(name)
     f = model.dynamics()
     program: dict = {}
     exec(compile(model.python_code(), "program.py", "exec"), program)
     by_sympy = f.formulas.sympy()
     numbers = dict(zip(by_sympy.p, f.p0.tolist(), strict=True))
-    # SymPy takes minutes to simplify longer ones.
+    # Longer rates are not simplified, which takes SymPy minutes.
     right = [sm.simplify(rate) if sm.count_ops(rate) < SIMPLIFIED else rate for rate in by_sympy.rates.subs(numbers)]
     peer = sm.lambdify([by_sympy.t, *by_sympy.x], right, "numpy", cse=True)
     x = f.start[:, None] + 0.01 * np.random.default_rng(0).standard_normal((len(f.start), states))
     few = x[:, :100]
     np.testing.assert_allclose(np.stack(np.broadcast_arrays(*peer(0.3, *few))), program["rates"](0.3, few), rtol=1e-9, atol=1e-9)
     one, out = x[:, 0].tolist(), np.empty_like(x)
-    # In turn, since a machine is not equally quick all the time.
+    # The sides are measured in turn, since the speed of a machine varies.
     many, alone = [1e9, 1e9], [1e9, 1e9]
     for _ in range(5):
         for k, (batch, call) in enumerate(((lambda: program["rates"](0.3, x, out=out), lambda: program["rates"](0.3, one)), (lambda: peer(0.3, *x), lambda: peer(0.3, *one)))):

@@ -20,7 +20,7 @@ class System:
     places: list[float]
     velocities: list[float]
     mass: Callable  # (q) -> matrix
-    force: Callable  # (q, v) -> forces, with those that the velocities cause
+    force: Callable  # (q, v) -> forces, including those that depend on velocities
     gaps: Callable  # (q) -> list
     rows: Callable  # (q) -> matrix of two rows for each contact
     restitution: list[float]
@@ -28,7 +28,7 @@ class System:
 
 
 def impulses(W, b, before, restitution, friction):
-    """By Gauss and Seidel, to round-off. Raises ArithmeticError if it does not converge."""
+    """Returns the impulses by the method of Gauss and Seidel, to round-off. Raises ArithmeticError if it does not converge."""
     p = np.zeros(len(b))
     for _ in range(100000):
         old = p.copy()
@@ -57,7 +57,7 @@ def smooth_step(s, q, v, h):
 
 
 def moreau_jean(s, h, times):
-    """Places and velocities at the times, which are multiples of the step."""
+    """Returns places and velocities at the times, which are multiples of the step."""
     q, v, found = np.array(s.places, float), np.array(s.velocities, float), []
     for k in range(round(max(times) / h) + 1):
         if any(round(t / h) == k for t in times):
@@ -74,7 +74,7 @@ def moreau_jean(s, h, times):
 
 
 def woodpecker():
-    """models/contacts/woodpecker.toml."""
+    """Returns the system of models/contacts/woodpecker.toml."""
     mM, JM, mS, JS, c, g = 0.0003, 5e-9, 0.0045, 7e-7, 0.0056, 9.81
     play, rM, hM, lM, lG, hS, lS, r0 = 0.0006, 0.0031, 0.0058, 0.01, 0.015, 0.02, 0.0201, 0.0025
     bird = np.array([1, lM, lG])  # the height of its mass centre
@@ -96,7 +96,7 @@ def woodpecker():
 
 
 def slider_crank():
-    """CRANK of siconos.py."""
+    """Returns the system CRANK of siconos.py."""
     l1, l2, a, b, c = 0.153, 0.306, 0.05, 0.025, 0.001
     m1, m2, m3, J1, J2, J3, g = 0.038, 0.038, 0.076, 7.4e-5, 5.9e-4, 2.7e-6, 9.81
     joint = (m2 / 2 + m3) * l1 * l2

@@ -53,7 +53,7 @@ contact = [{name = "floor", body = "ball", friction = 0.1, restitution = 0.9}]
 initial = {z = 1, "a'" = 2}
 """
 
-# The results have the inertia of a block of 1 x 0.5 and the corners of one of 0.2 x 0.1.
+# In the results the block has the inertia of one of 1 x 0.5 and the corners of one of 0.2 x 0.1.
 BLOCK = """
 coordinates = ["x", "y", "th"]
 parameters = {J = "(1 + 0.25)/12", a = 0.1, b = 0.05, e = 0.8}
@@ -303,7 +303,7 @@ EXAMPLES = [
 
 
 def simulate(program, example, times):
-    """The rows at the times, or the outcome of a motion that ends before."""
+    """Returns the rows at the times, or the outcome of a motion that ends before."""
     with tempfile.TemporaryDirectory() as folder:
         model = example.model
         if "\n" in model:

@@ -16,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 
-LEVELS = ("1e-6", "1e-9", "1e-12")  # of tolerance, or of error
+LEVELS = ("1e-6", "1e-9", "1e-12")  # levels of tolerance or of error
 PEERS = ("cvode", "ida")
 
 
@@ -33,7 +33,7 @@ def measure(bench, repeat):
 
 
 def best(runs):
-    """model -> tolerance -> integrator -> the fastest run, or None where it failed."""
+    """Returns the fastest runs by model, tolerance and integrator; None for a run that failed."""
     table = collections.defaultdict(lambda: collections.defaultdict(dict))
     for run in runs["benchmarks"]:
         if run["run_type"] != "iteration":
@@ -65,7 +65,7 @@ def equal_tolerance(table):
 
 
 def cheapest(cells, how, error):
-    """The tolerance and the run that reach the error in the least time; none: it does not get there."""
+    """Returns the tolerance and the run that reach the error in the least time; None if no run reaches the error."""
     good = [(tolerance, c[how]) for tolerance, c in cells.items() if c.get(how) and c[how]["error"] <= error]
     return min(good, key=lambda g: g[1]["us"], default=None)
 

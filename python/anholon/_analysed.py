@@ -1,4 +1,4 @@
-"""What is computed of a model without its motion: equations, proofs, comparisons, states, linear models."""
+"""The analyses of a model that need no motion: equations, proofs, comparisons, states, linear models."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def _whole_digits(digits: object) -> int:
 
 
 class Analysed(Described):
-    """A model with its equations, their proofs, and what holds at a state or over a parameter."""
+    """A model with its equations, proofs and comparisons, and with analyses at one state or over a parameter."""
 
     # ---- its equations ----
 
     def forms(self) -> list[_core.Form]:
-        """All classical forms of the equations, with whether they apply, and why not.
+        """Lists all classical forms of the equations; each form tells whether it applies to the model, and if not, why.
 
         Example:
             >>> import anholon as an
@@ -36,25 +36,25 @@ class Analysed(Described):
         return self._core.forms()
 
     def equations(self, form: str = "routh", *, expand: str = "auto", steps: bool = False, reactions: bool = False) -> Equations:
-        """The equations of motion in a classical form.
+        """Derives the equations of motion in a classical form.
 
         Args:
             form: a name that :meth:`forms` lists.
-            expand: ``auto``, ``none``, ``paper``, ``full`` or ``parts``: how far sums and products are written out.
-            steps: with the quantities that lead to them: energies, momenta, forces.
-            reactions: with the ideal reactions.
+            expand: how far sums and products are written out: ``auto``, ``none``, ``paper``, ``full`` or ``parts``.
+            steps: adds the quantities from which the equations follow: energies, momenta, forces.
+            reactions: adds the ideal reactions of the constraints.
 
         Raises:
-            ModelError: the form is not known, or does not apply.
+            ModelError: the form is not known or does not apply to the model.
         """
         return Equations(_core.derive(self._core, form, expand, steps, reactions))
 
     def reactions(self, form: str = "routh") -> Equations:
-        """The equations together with the ideal reactions of the constraints."""
+        """Derives the equations together with the ideal reactions of the constraints."""
         return self.equations(form, reactions=True)
 
     def prove(self, *forms: str | Iterable[str]) -> Proof:
-        """Proves that forms (all that apply if none is named) agree with Routh's equations.
+        """Proves that the forms named agree with Routh's equations; without names, all forms that apply.
 
         Raises:
             ModelError: a form is not known.
@@ -64,16 +64,17 @@ class Analysed(Described):
     # ---- at a state ----
 
     def compare(self, equations: PublishedEquations, *, eliminate: str | Iterable[str] = (), initial: Mapping[str, Number] | None = None) -> Comparison:
-        """Compares published equations with the derived ones: which are true, and where the others are wrong.
+        """Compares published equations with the derived ones: tells which are true, and where the others are wrong.
 
         Args:
             equations: a text with one equation per line, ``LABEL: left = right``, in the names of the model; a path, or
                 the name of shipped equations; ``{label: equation}``; or a list.
             eliminate: coordinates that reduced forms eliminate.
-            initial: the state near which they are eliminated.
+            initial: the state near which these coordinates are eliminated.
 
         Returns:
-            A list of lines with ``verdict``, ``nearest``, ``difference`` and ``suggestions``; true if all are.
+            A sequence with ``verdict``, ``nearest``, ``difference`` and ``suggestions`` for each equation. Its truth value is
+            True if all equations are true.
 
         Raises:
             ModelError: an equation has a mistake, or there is no such file.
@@ -98,15 +99,15 @@ class Analysed(Described):
         eliminate: str | Iterable[str] = (),
         digits: int = 16,
     ) -> State:
-        """Everything about one state: forces, accelerations, multipliers, reactions, energies, residuals.
+        """Computes forces, accelerations, multipliers, reactions, energies and residuals at one state.
 
         Args:
             initial: values instead of those of the file: ``{"theta": 1.3, "phi'": 6}``, SI. The initial value of a state of the
-                model is a parameter's, which :meth:`Model.with_` sets.
+                model is the value of a parameter, which :meth:`Model.with_` sets.
             t: the time, s.
-            form: of the equations.
+            form: the form of the equations.
             eliminate: coordinates that forms without multipliers eliminate.
-            digits: of the numbers; more than 16 come as ``mpmath.mpf``.
+            digits: the number of digits; numbers of more than 16 digits are ``mpmath.mpf``.
 
         Raises:
             ModelError: an argument makes no sense.
@@ -135,15 +136,15 @@ class Analysed(Described):
         eliminate: str | Iterable[str] = (),
         digits: int = 16,
     ) -> LinearModel:
-        """The linear model z' = A z + B u, y = C z + D u, with [input] as u and [output] as y.
+        """Computes the linear model z' = A z + B u, y = C z + D u, in which u are the inputs of the file and y its outputs.
 
         Args:
-            about: ``"state"``: the initial state; ``"equilibrium"``: the state of rest near the initial positions.
-            initial: values instead of those of the file; for an equilibrium, positions where the search begins.
+            about: ``"state"`` for the initial state, ``"equilibrium"`` for the state of rest near the initial positions.
+            initial: values instead of those of the file; for an equilibrium, the positions at which the search begins.
             t: the time, s.
-            form: of the equations.
+            form: the form of the equations.
             eliminate: coordinates that forms without multipliers eliminate.
-            digits: more than 16: :meth:`LinearModel.exact` has them.
+            digits: the number of digits; :meth:`LinearModel.exact` returns numbers of more than 16 digits.
 
         Raises:
             ModelError: an argument makes no sense.
@@ -183,17 +184,17 @@ class Analysed(Described):
         eliminate: str | Iterable[str] = (),
         digits: int = 16,
     ) -> Stability:
-        """Eigenvalues over a parameter, as curves, and the values at which they cross the imaginary axis.
+        """Computes eigenvalues over a parameter, as curves, and the values at which they cross the imaginary axis.
 
         The initial data are solved anew for each value. Two opposite crossings between neighbouring values are not
         detected.
 
         Args:
-            parameter: its name.
-            low: the first value, SI, or all values.
-            high: the last value.
-            n: how many values, equally far apart.
-            about: ``"state"`` or ``"equilibrium"``, as in :meth:`linearize`, likewise the others.
+            parameter: the name of the parameter.
+            low: the first value, in SI units, or all values.
+            high: the last value, in SI units.
+            n: the number of values, which are equally far apart.
+            about: ``"state"`` or ``"equilibrium"``, as in :meth:`linearize`, which has the other arguments, too.
 
         Raises:
             ModelError: there is no such parameter, or an argument makes no sense.

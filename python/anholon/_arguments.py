@@ -1,4 +1,4 @@
-"""What the functions of :class:`Dynamics` take as times, states, inputs and parameters, read as float64."""
+"""Reads times, states, inputs and parameters, the arguments of the functions of :class:`Dynamics`, as float64."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
 
 Values = Union["npt.ArrayLike", Mapping[str, "npt.ArrayLike"], None]
-"""Inputs or parameters: an array in their order, values by name (the others keep theirs), or None for those of the model. A
-Series of pandas whose labels are texts has values by name."""
+"""Inputs or parameters: an array in their order, some values by name (names left out keep the values of the model), or None for the
+values of the model. A Series of pandas whose labels are texts has values by name."""
 
 
 def time_of(t: object) -> float:
-    """The time as a float. Raises TypeError if it is no number."""
+    """Returns the time as a float. Raises TypeError if t is no number."""
     if type(t) is float:
         return t
     refuse_dates("t", t)
@@ -28,13 +28,13 @@ def time_of(t: object) -> float:
 
 
 def refuse_dates(name: str, value: Any) -> None:
-    """Raises TypeError for a date or a duration of NumPy, which would count in units of its own."""
+    """Raises TypeError for a date or a duration of NumPy, whose numbers count in a unit of its own."""
     if getattr(getattr(value, "dtype", None), "kind", "") in ("m", "M"):
         raise TypeError(f"{name} is a number in SI units, a time in s, not a {value.dtype.name.partition('[')[0]}")
 
 
 def labelled_values(values: Any) -> dict[str, Any] | None:
-    """Values by name: of a mapping, or of a Series of pandas whose labels are texts; None of all else, whose values have an order."""
+    """Returns the values by name of a mapping or of a Series of pandas whose labels are texts, and None for all else."""
     if isinstance(values, Mapping):
         return dict(values)
     index = getattr(values, "index", None)
@@ -52,7 +52,7 @@ def labelled_values(values: Any) -> dict[str, Any] | None:
 
 
 def number_of(name: str, value: object) -> float:
-    """A value as a float. Raises TypeError if it is no number."""
+    """Returns a value as a float. Raises TypeError if the value is no number."""
     refuse_dates(name, value)
     if not isinstance(value, SupportsFloat) or getattr(value, "ndim", 0) != 0:
         raise TypeError(f"{name} is a number in SI units, not {value!r:.60}")
@@ -60,7 +60,7 @@ def number_of(name: str, value: object) -> float:
 
 
 def numbers_of(name: str, values: object) -> Array:
-    """An array of float64. Raises TypeError if there are other things than numbers."""
+    """Returns the values as an array of float64. Raises TypeError if one of them is no number."""
     import numpy as np
 
     if values is None or isinstance(values, (str, Mapping)):
@@ -73,7 +73,7 @@ def numbers_of(name: str, values: object) -> Array:
 
 
 def takes_numbers(out: Array, x: Array) -> bool:
-    """Whether the core can write to `out` itself. Raises TypeError or ValueError if no rates of x can be put there."""
+    """True if the core can write to `out` itself. Raises TypeError or ValueError if `out` cannot hold the rates of x."""
     import numpy as np
 
     if not isinstance(out, np.ndarray) or out.dtype != np.float64:
@@ -87,7 +87,10 @@ def takes_numbers(out: Array, x: Array) -> bool:
 
 
 def in_order(labelled: Mapping[str, Any], names: list[str], usual: Callable[[], Array], what: str) -> Array:
-    """Values by name as rows in the order of `names`; those left out have their usual ones. Raises KeyError for another name."""
+    """Returns values by name as rows in the order of `names`; a name left out has its row of `usual()`.
+
+    Raises KeyError for a name that is not among them.
+    """
     import numpy as np
 
     for name in labelled:
@@ -102,7 +105,10 @@ def in_order(labelled: Mapping[str, Any], names: list[str], usual: Callable[[], 
 
 
 def array_of_values(given: object, count: int, what: str, shape: tuple[int, ...]) -> Array:
-    """One set of numbers, shape (count,), or one for each state of a batch of this shape. Raises TypeError, ValueError."""
+    """Returns one set of numbers, shape (count,), or one set for each state of a batch, shape (count, *shape).
+
+    Raises TypeError if a value is no number, and ValueError for another shape.
+    """
     array = numbers_of(what, given)
     if array.shape[:1] != (count,) or array.shape[1:] not in ((), shape):
         raise ValueError(f"{what} has the shape {array.shape}; it has to be {(count,)}" + (f" or {(count, *shape)}" if shape else ""))

@@ -1,4 +1,4 @@
-"""Columns for whoever reads Arrow: pyarrow, polars, DuckDB."""
+"""Columns for the libraries that read Arrow: pyarrow, polars, DuckDB."""
 
 from __future__ import annotations
 
@@ -12,6 +12,6 @@ if TYPE_CHECKING:
 
 
 def stream(columns: Mapping[str, npt.NDArray[Any]], units: Mapping[str, str]) -> object:
-    """A capsule of the Arrow C stream interface; numbers are read where they are, arrays of texts (of objects) become texts."""
+    """Returns a capsule of the Arrow C stream interface. Arrays of numbers are not copied; arrays of objects become texts."""
     arrays = [column.tolist() if column.dtype == object else column for column in columns.values()]
     return _core.arrow_stream(list(columns), [units.get(name, "") for name in columns], arrays)

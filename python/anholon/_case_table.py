@@ -1,4 +1,4 @@
-"""Tables of cases, as the library takes them: the text of a CSV file."""
+"""Tables of cases as the text of a CSV file, which is the form that the library takes."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ from ._numbers import Number, varied_list
 
 
 class Frame(Protocol):
-    """What tables of pandas, and arrays by name, have in common."""
+    """The method that a table of pandas and a mapping of arrays have in common."""
 
     def items(self) -> Any:
-        """Names and columns."""
+        """Returns the names with the columns."""
 
 
 class ArrowTable(Protocol):
     """A table of pyarrow."""
 
     def to_pydict(self) -> Any:
-        """Names and columns."""
+        """Returns the columns by name."""
 
 
 class Series(Protocol):
     """A table of polars."""
 
     def to_dict(self, *, as_series: bool) -> Any:
-        """Names and columns."""
+        """Returns the columns by name."""
 
 
 CaseTable = Union[str, "os.PathLike[str]", Mapping[str, Iterable[Number]], Frame, ArrowTable, Series]
@@ -40,11 +40,11 @@ CaseTable = Union[str, "os.PathLike[str]", Mapping[str, Iterable[Number]], Frame
 
 
 def table_of(cases: CaseTable) -> tuple[str, str]:
-    """The name of a table in messages, and its text.
+    """Returns the name of a table in messages, and the text of the table.
 
     Raises:
         ModelError: the file cannot be read; the columns have different lengths.
-        TypeError: this is no table.
+        TypeError: `cases` is no table.
     """
     if isinstance(cases, (str, os.PathLike)):
         return os.fspath(cases), _core.case_table(os.fspath(cases))
@@ -66,20 +66,20 @@ def table_of(cases: CaseTable) -> tuple[str, str]:
 
 
 def names_of_table(text: str) -> set[str]:
-    """What a table varies; brackets and quotes may hold commas."""
+    """Returns the names that a table varies. Commas within brackets or quotes do not separate names."""
     heads = [line for line in text.splitlines() if line.strip(" \t")][:1]
     found = re.findall(r'"((?:[^"]|"")*)"|((?:[^,"\[(]|\[[^\]]*\]|\([^)]*\))+)', heads[0] if heads else "")
     return {(quoted or plain).strip(" \t").removesuffix("(0)") for quoted, plain in found}
 
 
 def lines_of(text: str) -> int:
-    """How many cases a table has."""
+    """Returns the number of cases of a table."""
     return max(sum(1 for line in text.splitlines() if line.strip(" \t")) - 1, 0)
 
 
 def _items(cases: Any) -> Iterable[tuple[Any, Any]]:
     if hasattr(cases, "to_pydict"):
-        # A dictionary would hold one of two columns of a name.
+        # to_pydict() would lose one of two columns with the same name.
         return [(name, _single(column, column.type, column.to_pylist)) for name, column in zip(cases.column_names, cases.columns)]
     if hasattr(cases, "get_columns") and hasattr(cases, "to_dict"):
         return [(column.name, _single(column, column.dtype, column.to_list)) for column in cases.get_columns()]
@@ -89,7 +89,7 @@ def _items(cases: Any) -> Iterable[tuple[Any, Any]]:
 
 
 def _single(column: Any, kind: object, values: Callable[[], Any]) -> Any:
-    """The values of a column; those of single precision as an array, whose decimals are short."""
+    """Returns the values of a column. Those of single precision stay an array, because its numbers have shorter decimals than floats."""
     return column.to_numpy() if str(kind) in ("Float32", "float", "halffloat") else values()
 
 

@@ -1,4 +1,4 @@
-"""What a model says, and the systems that are prepared of it."""
+"""The contents of a model, and its prepared systems."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from . import _core
 from ._names import ByName, names_of
 from ._source import Source
 
-_KEPT = 16  # prepared systems of a model
+_KEPT = 16  # the largest number of prepared systems that a model keeps
 
 
 class Described:
-    """A model as its file has it: titles, names, values; and its prepared systems, which are kept."""
+    """The contents of a model file (title, names, values), and a store of the prepared systems of the model."""
 
     def __init__(self, core: _core.Model, again: Source, given: dict[str, str], cases: list[str]) -> None:
         self._core = core
@@ -28,7 +28,7 @@ class Described:
 
     @property
     def text(self) -> str:
-        """The text it was read from."""
+        """The text from which the model was read."""
         return self._core.text
 
     @property
@@ -48,7 +48,7 @@ class Described:
 
     @property
     def states(self) -> list[str]:
-        """Further states with rates of their own."""
+        """The names of the states, unknowns with rates of their own beside the coordinates."""
         return self._core.states
 
     @property

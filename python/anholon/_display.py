@@ -1,4 +1,4 @@
-"""How notebooks show objects: tables and formulas in HTML with MathML, and LaTeX for those who print."""
+"""The objects as notebooks show them: tables and formulas in HTML with MathML, and LaTeX for printing."""
 
 from __future__ import annotations
 
@@ -16,34 +16,34 @@ if TYPE_CHECKING:
     from .sweep import Sweep
 
 _LEFT = " style='text-align:left'"
-_MOST = 24  # rows and columns of a table
+_MOST = 24  # the most rows and columns of a table
 
 
 def math(mathml: str) -> str:
-    """MathML as an element that stands in text."""
+    """Returns MathML as an element that stands in text."""
     return f"<math>{mathml}</math>"
 
 
 def symbol(name: str, model: _core.Model | None = None) -> str:
-    """A name as a formula in HTML."""
+    """Returns the symbol of a name in HTML."""
     return math(_core.symbol(name, model)[1])
 
 
 def number(value: float) -> str:
-    """A number of six digits as HTML."""
+    """Returns a number with six digits as HTML."""
     text = f"{value:.6g}"
     mantissa, e, power = text.partition("e")
     return mantissa if not e else f"{mantissa}·10<sup>{int(power)}</sup>"
 
 
 def rows(title: str, lines: Iterable[tuple[str, str]]) -> str:
-    """A table of names and what they say; both are HTML, the title is a text."""
+    """Returns a table whose rows are a name and its contents, both HTML. The title is plain text."""
     body = "".join(f"<tr><th{_LEFT}>{name}</th><td{_LEFT}>{said}</td></tr>" for name, said in lines)
     return f"<table><caption>{html.escape(title)}</caption><tbody>{body}</tbody></table>"
 
 
 def table(title: str, head: Sequence[str], body: Iterable[Sequence[str]]) -> str:
-    """A table with a head; all cells are HTML, the title is a text."""
+    """Returns a table with a head row. All cells are HTML, the title is plain text."""
     first = "".join(f"<th{_LEFT}>{cell}</th>" for cell in head)
     rest = "".join("<tr>" + "".join(f"<td{_LEFT}>{cell}</td>" for cell in line) + "</tr>" for line in body)
     return f"<table><caption>{html.escape(title)}</caption><thead><tr>{first}</tr></thead><tbody>{rest}</tbody></table>"
@@ -53,7 +53,7 @@ def table(title: str, head: Sequence[str], body: Iterable[Sequence[str]]) -> str
 
 
 def outcome(of: _core.Outcome) -> str:
-    """How a computation ended, and what to do."""
+    """Shows how a computation ended, and what to do."""
     if of.ok:
         return "<p>finished</p>"
     return f"<p><strong>{html.escape(of.kind)}</strong>: {html.escape(of.message)}</p><p>hint: {html.escape(of.hint)}</p>"
@@ -74,7 +74,7 @@ def _report_lines(of: _core.Report) -> list[tuple[str, str]]:
 
 
 def report(of: _core.Report) -> str:
-    """Residuals, digits, conserved quantities."""
+    """Shows steps, residuals, digits to trust and conserved quantities."""
     steps = ("steps", f"{of.steps} of order {of.order} by {html.escape(of.method)}, {number(of.seconds)} s")
     return rows("report", [steps, *_report_lines(of)])
 
@@ -94,7 +94,7 @@ def _eigenvalue(value: complex) -> str:
 
 
 def linear_model(of: LinearModel) -> str:
-    """z' = A z + B u, y = C z + D u with numbers, and the eigenvalues."""
+    """Shows the matrices of z' = A z + B u, y = C z + D u and the eigenvalues."""
     head = f"linear model, {of.motion}" + (f": {of.why}" if of.why else "")
     eigenvalues = ", ".join(_eigenvalue(value) for value in of.eigenvalues[:_MOST]) or "none"
     lines = [("z", f"<math>{_column(_core.symbol(name)[1] for name in of.states[:_MOST])}</math>")]
@@ -114,7 +114,7 @@ def _bmatrix(lines: Iterable[Iterable[str]]) -> str:
 
 
 def linear_model_latex(of: LinearModel) -> str:
-    """The same in LaTeX."""
+    """Returns the equations of the linear model in LaTeX."""
     z = _bmatrix([_core.symbol(name)[0]] for name in of.states)
 
     def product(matrix: Any, of_names: str) -> str:
@@ -134,7 +134,7 @@ def linear_model_latex(of: LinearModel) -> str:
 
 
 def check(of: Check) -> str:
-    """Degrees of freedom, kinds of constraints, the initial state."""
+    """Shows the degrees of freedom, the kinds of the constraints and the initial state."""
     model = of.model._core
     constraints = [(html.escape(c.name), html.escape(c.kind) + (", redundant" if c.redundant else "")) for c in of.constraints]
     initial = [(symbol(v.name, model), number(v.value), v.origin) for v in of.initial]
@@ -146,13 +146,13 @@ def check(of: Check) -> str:
 
 
 def proof(of: Proof, signs: dict[str, str]) -> str:
-    """One line for each form."""
+    """Shows the verdict on each form, one line for each."""
     lines = [(html.escape(f.form), f"{signs[f.verdict]} {f.verdict}", html.escape(f.detail)) for f in of.forms]
     return table("against Routh's equations", ["form", "verdict", ""], lines)
 
 
 def run(of: Run) -> str:
-    """How a motion ended, how far it can be trusted, what happened, and its columns."""
+    """Shows how a motion ended, how far it can be trusted, its events and its columns."""
     if len(of) == 0:
         return outcome(of.outcome)
     report = of.report
@@ -169,7 +169,7 @@ def run(of: Run) -> str:
 
 
 def sweep(of: Sweep, title: str, outcomes: Sequence[str]) -> str:
-    """How the motions ended, and the ranges of what varied."""
+    """Shows how the motions ended, and the ranges of the values that vary."""
     import numpy as np
 
     kinds = {kind: outcomes.count(kind) for kind in dict.fromkeys(outcomes)}

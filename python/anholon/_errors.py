@@ -1,4 +1,4 @@
-"""Exceptions: for what a user wrote. What happens to a motion is told by an outcome."""
+"""Exceptions for mistakes of the user. An outcome, not an exception, tells what happens to a motion."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class ModelError(ValueError):
     """Mistakes in a model or in an argument, each with its place and a hint.
 
     Attributes:
-        diagnostics: all of them, in the order of the text; ``line`` and ``column`` count from 1.
+        diagnostics: all mistakes, in the order of the text; ``line`` and ``column`` count from 1.
 
     Example:
         >>> import anholon as an
@@ -44,7 +44,7 @@ class ModelError(ValueError):
         return self.text
 
     def _render_traceback_(self) -> list[str]:
-        """IPython and Jupyter show this instead of a traceback: the user's own line that called, then the mistake."""
+        """Returns the lines that IPython and Jupyter show instead of a traceback: the user's line with the call, then the mistake."""
         return [*_calling_lines(self), f"\x1b[31mModelError\x1b[0m: {self.text}"]
 
     def _repr_html_(self) -> str:
@@ -52,11 +52,11 @@ class ModelError(ValueError):
 
 
 class ColumnError(KeyError):
-    """There is no column of that name in a run; the text names the nearest ones.
+    """A run has no column of a given name. The text names the nearest columns.
 
     Attributes:
-        name: what was asked for.
-        columns: the names that there are.
+        name: the name that was asked for.
+        columns: the names of the columns of the run.
 
     Example:
         >>> import anholon as an
@@ -93,10 +93,10 @@ class ColumnError(KeyError):
 
 
 class MotionError(RuntimeError):
-    """What :meth:`Run.expect` and functions without a run raise where a motion or a computation cannot go on.
+    """A motion or a computation cannot go on. :meth:`Run.expect` and functions that return no run raise it.
 
     Attributes:
-        outcome: its kind, message and remedy.
+        outcome: the outcome of the motion or computation, with its kind, message and remedy.
 
     Example:
         >>> import anholon as an
@@ -116,10 +116,10 @@ class MotionError(RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a computation. What was computed until then is kept.
+    """The user pressed Ctrl-C during a computation. The results computed until then are kept.
 
     Attributes:
-        result: the :class:`Run`, :class:`Sweep` or :class:`SweepFolder` as far as it came.
+        result: the :class:`Run`, :class:`Sweep` or :class:`SweepFolder` with the results computed until then.
 
     Example:
         >>> import anholon as an, signal, threading
@@ -141,7 +141,7 @@ class Interrupted(KeyboardInterrupt):
 
 
 def _calling_lines(error: BaseException) -> list[str]:
-    """The place in the user's code from which the library was called: the last frame outside of the package and of IPython."""
+    """Returns the line of the user's code that called the library: that of the last frame outside of the package and of IPython."""
     place = None
     for frame, line in traceback.walk_tb(error.__traceback__):
         name = frame.f_globals.get("__name__", "")
@@ -153,7 +153,7 @@ def _calling_lines(error: BaseException) -> list[str]:
     return [f"line {place[1]}: \x1b[1m{code}\x1b[0m"] if code else []
 
 
-# What the library says in the words of the command line, and how Python says it.
+# Patterns of messages in the words of the command line, and the same messages in the words of Python.
 _IN_PYTHON = [
     (r"\berror: --(?:set|case): ", "error: "),
     (r"\berror: --set (\w+)=: ", r"error: \1: "),
@@ -172,7 +172,7 @@ _IN_PYTHON = [
 
 
 def error_of(text: str, diagnostics: list[Diagnostic], outcome: Outcome | None) -> Exception:
-    """The exception for an error of the library; called by the binding."""
+    """Returns the exception for an error of the library. The binding calls it."""
     if outcome is not None:
         return MotionError(text.rstrip("\n"), outcome)
     for words, here in _IN_PYTHON:

@@ -1,4 +1,4 @@
-"""What a sweep takes to another process: its arrays and outcomes."""
+"""The part of a sweep that is pickled: its arrays and outcomes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SweepAgain:
-    """The model of a sweep with all that was asked for."""
+    """The model of a sweep and all arguments of the sweep, from which it can be computed again."""
 
     model: Model
     form: str
@@ -30,7 +30,7 @@ class SweepAgain:
     scenarios: bool
 
     def run(self, threads: int, stop: Callable[[], object] | None, tell: Callable[[float, int], object] | None) -> tuple[_core.Sweep, object]:
-        """The sweep, and what was raised in the meantime."""
+        """Computes the sweep. Returns it with the exception that was raised meanwhile, or with None."""
         system = None if self.scenarios else self.model._system_of_sweep(self.form, self.initial)
         if system is None:
             return _core.sweep_scenarios(self.model._core, self.form, self.initial, self.words, threads, stop, tell)
@@ -38,7 +38,7 @@ class SweepAgain:
 
 
 class KeptSweep:
-    """What a sweep takes to another process: its numbers and outcomes. It is computed again where a file or a figure is asked for."""
+    """The part of a sweep that is pickled: its numbers and outcomes. A file or a figure needs the sweep to be computed again."""
 
     def __init__(self, core: _core.Sweep | KeptSweep, varied: list[str], again: SweepAgain) -> None:
         self._again = again
@@ -55,7 +55,7 @@ class KeptSweep:
         self._varied: dict[str, Array] = {name: core.varied(name).copy() for name in varied}
         self._ends: dict[str, Array] = {name: core.column(name).copy() for name in self.columns}
         self._rows: dict[str, Array] = {name: core.rows(name).copy() for name in self.columns} if self.times.size else {}
-        # Most motions end alike: each outcome and event is kept once.
+        # Most motions have the same outcome, so each different outcome is kept once.
         self._outcomes: list[_core.Outcome] = []
         self._outcome_numbers: list[int] = []
         known: dict[tuple[str, str, str], int] = {}
@@ -78,34 +78,34 @@ class KeptSweep:
                 array.flags.writeable = False
 
     def column(self, name: str) -> Array:
-        """A column at the end of each motion."""
+        """Returns a column at the end of each motion."""
         return self._ends[name]
 
     def varied(self, name: str) -> Array:
-        """The values of what varies."""
+        """Returns the values of a name that varies."""
         return self._varied[name]
 
     def rows(self, name: str) -> Array:
-        """A column at the times of ``at``, case by case."""
+        """Returns a column at the times of ``at``, case by case."""
         return self._rows[name]
 
     def event(self, number: int) -> str:
-        """The name of the event that ended a motion."""
+        """Returns the name of the event that ended a motion; it is empty if none did."""
         return self._events[number]
 
     def steps(self, number: int) -> int:
-        """The steps of a motion."""
+        """Returns the number of steps of a motion."""
         return self._steps[number]
 
     def outcome_of(self, number: int) -> _core.Outcome:
-        """How a motion ended."""
+        """Returns the outcome of a motion."""
         return self._outcomes[self._outcome_numbers[number]]
 
     def made(self) -> _core.Sweep:
-        """The sweep itself, computed again: its cases have the same bits.
+        """Returns the sweep, computed again; its cases have the same bits.
 
         Raises:
-            ModelError: it was ended from outside.
+            ModelError: the sweep was ended from outside.
         """
         if self.outcome.kind != "finished":
             raise ModelError("a sweep that was stopped from outside takes its numbers to another process, and no more\nhint: sweep.save where it was computed, or sweep.to_pandas() here")
@@ -117,9 +117,9 @@ class KeptSweep:
         return self._made
 
     def write(self, path: str) -> str:
-        """Writes a file."""
+        """Writes the sweep to a file."""
         return self.made().write(path)
 
     def figure(self, columns: list[str], x: str, y: str) -> str:
-        """The cases as SVG."""
+        """Returns a figure of the cases as SVG."""
         return self.made().figure(columns, x, y)

@@ -1,4 +1,4 @@
-"""The text of a model file, whose lines know the line of Python that wrote them."""
+"""The text of a model file; each of its lines knows the line of Python that wrote it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PACKAGE = os.path.dirname(__file__)
 
 @dataclass(frozen=True)
 class _Where:
-    """A line of Python."""
+    """The place of a line of Python."""
 
     file: str
     line: int
@@ -29,7 +29,7 @@ class _Where:
 
 
 def _caller() -> _Where:
-    """The nearest line outside of this package."""
+    """Returns the nearest line on the call stack outside of this package."""
     frame = sys._getframe(1)
     while os.path.dirname(frame.f_code.co_filename) == _PACKAGE and frame.f_back is not None:
         frame = frame.f_back
@@ -43,17 +43,17 @@ class _Line:
 
 
 def quoted(text: str) -> str:
-    """A text as a value of TOML."""
+    """Returns a text as a value of TOML."""
     return json.dumps(text, ensure_ascii=False)
 
 
 def key_text(name: str) -> str:
-    """A name as a key of TOML."""
+    """Returns a name as a key of TOML."""
     return name if _BARE.match(name) else quoted(name)
 
 
 def value_text(value: object) -> str:
-    """A formula, an equation or a vector by its components as a value of TOML."""
+    """Returns a formula, an equation or the components of a vector as a value of TOML."""
     if isinstance(value, Equation):
         return quoted(value.text)
     if isinstance(value, str):
@@ -98,7 +98,7 @@ class ModelFile:
         self._lists.append(_Line("", None))
 
     def has_element(self, section: str, name: str) -> bool:
-        """Whether there is an element of that name, if elements of the section begin with their names."""
+        """True if the section has an element of that name. The name must be the first key of its elements."""
         begin = [f"[[{section}]]", f"name = {quoted(name)}"]
         return any([line.text for line in self._lists[k : k + 2]] == begin for k in range(len(self._lists)))
 
@@ -114,7 +114,7 @@ class ModelFile:
         return "\n".join(line.text for line in self._lines()) + "\n"
 
     def in_python(self, error: ModelError) -> ModelError:
-        """The same mistakes at the lines of Python that wrote them."""
+        """Returns an error with the same mistakes, each at the line of Python that wrote it."""
         lines, parts = self._lines(), []
         for d in error.diagnostics:
             hint = f"\nhint: {d.hint}" if d.hint else ""

@@ -1,4 +1,4 @@
-"""Names, and lists of names, as of coordinates, forms or outputs."""
+"""Names and lists of names, for example of coordinates, forms or outputs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TypeVar
 
 V = TypeVar("V")
 
-# A Greek letter and its spelled name are one name in the language of models, and so are the signs of a prime.
+# In the model language a Greek letter and its spelled name are the same name; so are the characters for a prime.
 _SPELLED = str.maketrans(
     {
         **dict(zip("αβγδεζηθικλμνξοπρστυφχψω", "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi chi psi omega".split(), strict=True)),
@@ -19,22 +19,22 @@ _SPELLED = str.maketrans(
 
 
 def spelled(name: str) -> str:
-    """The name with its Greek letters spelled: "theta'" for "θ'"."""
+    """Returns the name with its Greek letters spelled: "theta'" for "θ'"."""
     return name if name.isascii() else name.translate(_SPELLED)
 
 
 def known(name: str, names: Container[str]) -> str:
-    """The name as these names have it, with a Greek letter or spelled; the name itself if it is none of them."""
+    """Returns the name in the spelling that `names` has, with or without Greek letters; the name itself if `names` lacks it."""
     if not isinstance(name, str) or name in names:
         return name
     return spelled(name) if spelled(name) in names else name
 
 
 def by_spelled_names(values: Mapping[str, V], what: str) -> dict[str, V]:
-    """The values by spelled names.
+    """Returns the values by spelled names.
 
     Raises:
-        ModelError: two of the names are one.
+        ModelError: two of the names have the same spelled name.
     """
     from ._errors import ModelError
 
@@ -48,7 +48,7 @@ def by_spelled_names(values: Mapping[str, V], what: str) -> dict[str, V]:
 
 
 class ByName(dict[str, V]):
-    """Values by name, which a Greek letter and its spelled name find alike."""
+    """Values by name. A name with Greek letters finds the value of its spelled name."""
 
     def __missing__(self, name: str) -> V:
         own = spelled(name) if isinstance(name, str) else name
@@ -60,12 +60,12 @@ class ByName(dict[str, V]):
         return super().__contains__(name) or (isinstance(name, str) and super().__contains__(spelled(name)))
 
     def get(self, name: str, default: object = None) -> object:  # type: ignore[override]
-        """The value of a name, or the default."""
+        """Returns the value of a name, or the default if there is no such name."""
         return self[name] if name in self else default
 
 
 def names_of(names: str | Iterable[object]) -> list[str]:
-    """The names in a list; a text is one name, not the list of its characters."""
+    """Returns names as a list. A text is one name, not the list of its characters."""
     if not isinstance(names, (str, Iterable)):
         raise TypeError(f"a name is a str, such as 'kane', or names are a list, not {names!r:.60}")
     return [names] if isinstance(names, str) else [str(name) for name in names]

@@ -1,4 +1,4 @@
-"""Numbers as the library takes them: texts of exact decimals, fractions or formulas with units."""
+"""Numbers as the texts that the library takes: exact decimals, fractions or formulas with units."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ Number = Union[int, float, str, Fraction, Decimal, "np.floating[Any]", "np.integ
 
 
 def text_of(number: Number) -> str:
-    """The text of a number, also in an array of no axes. Raises TypeError for what is none, ValueError for infinity and NaN."""
+    """Returns the text of a number or of an array without axes. Raises TypeError if it is no number, ValueError for infinity and NaN."""
     if type(number).__module__ == "numpy" and getattr(number, "shape", None) == ():
         kind = number.dtype  # type: ignore[union-attr]
-        if kind.kind in "mM":  # item() is a count in some of their units
+        if kind.kind in "mM":  # item() would return a count in their unit
             raise TypeError(f"a number is an int, float, Fraction, Decimal or str, not a {kind.name.partition('[')[0]}: a time is given in s")
         if kind.kind == "f" and kind.itemsize < 8 and math.isfinite(number):  # type: ignore[arg-type]
             return str(number)  # the decimal that Python prints for a float32
@@ -49,11 +49,11 @@ def text_of(number: Number) -> str:
 
 
 def texts_of(values: Mapping[str, Number] | None) -> dict[str, str]:
-    """The same for values by name.
+    """Returns the texts of values by name, by their spelled names.
 
     Raises:
         TypeError: `values` is no mapping of names to numbers.
-        ModelError: two of the names are one, as "μ" and "mu".
+        ModelError: two of the names have the same spelled name, for example "μ" and "mu".
     """
     if values is None:
         return {}
@@ -70,11 +70,11 @@ def texts_of(values: Mapping[str, Number] | None) -> dict[str, str]:
 
 
 def whole(name: str, number: object, least: int) -> int:
-    """A whole number that is not below the least one.
+    """Returns a whole number that is at least `least`.
 
     Raises:
-        TypeError: `number` is none.
-        ValueError: it is below.
+        TypeError: `number` is no whole number.
+        ValueError: `number` is below `least`.
     """
     if isinstance(number, bool) or not isinstance(number, numbers.Integral):
         raise TypeError(f"{name} is a whole number, not {number!r:.60}")
@@ -84,7 +84,7 @@ def whole(name: str, number: object, least: int) -> int:
 
 
 def float_of(text: str | None) -> float | None:
-    """The value of a text that is a decimal or a fraction; None for formulas."""
+    """Returns the value of a text that is a decimal or a fraction, and None for a formula."""
     try:
         return None if text is None else float(Fraction(text))
     except (ValueError, ZeroDivisionError):
@@ -92,7 +92,7 @@ def float_of(text: str | None) -> float | None:
 
 
 def list_of(values: Number | Iterable[Number]) -> list[str]:
-    """The texts of a list or an array, of one number, or of a text with commas: ``"0.4, 0.5"`` as on the command line."""
+    """Returns the texts of the numbers in a list, in an array or in a text with commas (``"0.4, 0.5"``), or that of one number."""
     if isinstance(values, str):
         # A comma within parentheses belongs to a function.
         return [text.strip() for text in re.split(r",(?![^(]*\))", values)]
@@ -100,13 +100,13 @@ def list_of(values: Number | Iterable[Number]) -> list[str]:
     if getattr(kind, "kind", "") == "f" and getattr(kind, "itemsize", 8) < 8:
         import numpy as np
 
-        values = np.asarray(values)  # a Series of float32 hands out floats, whose decimals are longer
+        values = np.asarray(values)  # iterating over a Series of float32 gives floats, whose decimals are longer
     several = isinstance(values, Iterable) and getattr(values, "ndim", 1) != 0  # an array of no axes is one number
     return [text_of(value) for value in values] if several else [text_of(values)]  # type: ignore[union-attr, arg-type]
 
 
 def varied_list(name: object, values: Number | Iterable[Number]) -> list[str]:
-    """The same of what a sweep varies. Raises TypeError or ValueError with the name for what is no number."""
+    """Returns the texts of the values that a sweep varies. Raises TypeError or ValueError with the name if a value is no number."""
     try:
         return list_of(values)
     except (TypeError, ValueError) as mistake:
@@ -114,7 +114,7 @@ def varied_list(name: object, values: Number | Iterable[Number]) -> list[str]:
 
 
 def exact_numbers(texts: Sequence[str]) -> list[Any]:
-    """Numbers with all digits of their texts: ``mpmath.mpf`` if mpmath is there, else the texts."""
+    """Returns numbers with all digits of their texts: ``mpmath.mpf`` if mpmath is installed, else the texts."""
     try:
         import mpmath
     except ImportError:
@@ -124,7 +124,7 @@ def exact_numbers(texts: Sequence[str]) -> list[Any]:
 
 
 def spaced(low: Number, high: Number, n: int) -> list[str]:
-    """n values from low to high, equally far apart, without rounding where both are decimals or fractions."""
+    """Returns n equally spaced values from low to high, as exact fractions. Raises ValueError if an end is no decimal or fraction."""
     ends = text_of(low), text_of(high)
     try:
         first, last = Fraction(ends[0]), Fraction(ends[1])

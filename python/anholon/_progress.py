@@ -1,4 +1,4 @@
-"""Bars of progress: text on a terminal, HTML in a notebook."""
+"""Progress bars: text on a terminal, HTML in a notebook."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from collections.abc import Callable
 from typing import Any, Union
 
 Progress = Union[bool, Callable[[float, int], object], None]
-"""True: a bar. False: none. A function: told every 20 ms. None: a bar after two seconds where someone sits before it."""
+"""True shows a bar, False none. A function is called every 20 ms. None shows a bar after two seconds in an interactive session."""
 
-_QUIET = 2.0  # s before a bar is shown that nobody asked for
-_PAUSE = 0.1  # s between pictures
+_QUIET = 2.0  # s before a bar appears that was not asked for
+_PAUSE = 0.1  # s between two updates of the bar
 _WIDTH = 30  # characters
 
 
 def interactive() -> bool:
-    """Whether someone sits before the interpreter: a prompt or a notebook."""
+    """True if the session is interactive: a prompt or a notebook."""
     return hasattr(sys, "ps1") or bool(sys.flags.interactive) or _notebook() is not None
 
 
 def _notebook() -> Any:
-    """IPython's module of displays if a notebook runs this, else None; IPython is not imported for it."""
+    """Returns the module IPython.display in a notebook, else None. Does not import IPython outside of it."""
     ipython = sys.modules.get("IPython")
     shell = ipython.get_ipython() if ipython is not None else None
     if shell is None or not hasattr(shell, "kernel"):
@@ -33,7 +33,7 @@ def _notebook() -> Any:
 
 
 class Bar:
-    """The bar of one computation. It is told how far the computation has come, and closed in the end."""
+    """The progress bar of one computation. A call tells it how far the computation is; close() removes it."""
 
     def __init__(self, what: str, start: float, end: float | None, after: float, unit: str) -> None:
         self._what, self._start, self._end, self._unit = what, start, end, unit
@@ -74,7 +74,7 @@ class Bar:
         self._written = len(line)
 
     def close(self) -> None:
-        """Takes the bar away."""
+        """Removes the bar."""
         if self._handle is not None:
             self._handle.update(self._display.HTML(""))
         if self._written:
@@ -83,7 +83,7 @@ class Bar:
 
 
 class Shown:
-    """What ``progress`` asks for, for the time of one computation; its value is the function to tell, or None."""
+    """Shows the progress of one computation as ``progress`` asks. The value of the ``with`` statement is the function to call, or None."""
 
     def __init__(self, progress: Progress, what: str, end: float | None, *, start: float = 0.0, unit: str = "t =") -> None:
         self._bar: Bar | None = None

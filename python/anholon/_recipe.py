@@ -1,4 +1,4 @@
-"""How a motion is computed, so that it can be computed again: for more of it, or in another process."""
+"""The options of a motion, by which it is computed again: for its polynomials, or in another process."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class Recipe:
     eliminate: str | list[str]
     words: dict[str, str]
     times: list[str]
-    cut: bool = False  # it was ended from outside, which is not done again
+    cut: bool = False  # whether the motion was ended from outside, which cannot be repeated
 
     def run(self) -> _core.Run:
-        """The motion, the same bits again."""
+        """Computes the motion again, with the same bits."""
         return self._made(self.words, self.times, dense=False)
 
     @property
@@ -39,7 +39,7 @@ class Recipe:
         return self.model._system(self.form, self.initial, self.eliminate).start
 
     def polynomials(self, last: float | None) -> _core.Run:
-        """The motion with the polynomials of its steps; of one that was ended from outside as far as its last row."""
+        """Computes the motion again and keeps the polynomials of its steps; up to the time `last`, if it is given."""
         if last is None:
             return self._made({**self.words, "error-estimate": "never"}, self.times, dense=True)
         words = {name: word for name, word in self.words.items() if name not in ("to", "every")}
@@ -55,7 +55,7 @@ class Recipe:
 
 
 class KeptRun:
-    """What a run takes to another process: its numbers, events and report. The rest is computed again where it is asked for."""
+    """The part of a run that is pickled: its numbers, events and report. The rest is computed again when it is needed."""
 
     has_dense: bool = False
 
@@ -76,18 +76,18 @@ class KeptRun:
         self._block.flags.writeable = False
 
     def column(self, name: str) -> Array:
-        """The numbers of a column."""
+        """Returns the numbers of a column, shape (rows,)."""
         return self._block[:, [column.name for column in self.columns].index(name)]
 
     def block(self, first: int, count: int) -> Array:
-        """The numbers of columns side by side, shape (rows, count)."""
+        """Returns the numbers of neighbouring columns, shape (rows, count)."""
         return self._block[:, first : first + count]
 
     def made(self) -> _core.Run:
-        """The run itself, computed again.
+        """Returns the run, computed again.
 
         Raises:
-            ModelError: it was ended from outside.
+            ModelError: the run was ended from outside.
         """
         if self._recipe.cut:
             raise ModelError("a run that was stopped from outside takes its numbers, events and report to another process, and no more\nhint: save it, or make its page, where it was computed")
@@ -96,25 +96,25 @@ class KeptRun:
         return self._made
 
     def text(self, row: int, column: str) -> str:
-        """A number with all its digits."""
+        """Returns a number with all its digits."""
         return self.made().text(row, column)
 
     def page(self, forms: list[str], proof: bool) -> str:
-        """The page of the run."""
+        """Returns the page of the run."""
         return self.made().page(forms, proof)
 
     def picture_data(self) -> str:
-        """What the picture plays."""
+        """Returns the data that the animation plays."""
         return self.made().picture_data()
 
     def figure(self, columns: list[str], x: str) -> str:
-        """Columns as SVG."""
+        """Returns a figure of columns as SVG."""
         return self.made().figure(columns, x)
 
     def json(self) -> str:
-        """The text of ``anholon simulate --json``."""
+        """Returns the text that ``anholon simulate --json`` prints."""
         return self.made().json()
 
     def write(self, path: str) -> str:
-        """Writes a file."""
+        """Writes the run to a file."""
         return self.made().write(path)

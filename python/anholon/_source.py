@@ -1,4 +1,4 @@
-"""Where a model is read."""
+"""The source of a model."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from . import _core
 
 @dataclass(frozen=True)
 class Source:
-    """Where a model is read: a text with its name, a file, or the folder of a sweep; and in which mode of its contacts."""
+    """The source of a model: a text with its name, a file, or the folder of a sweep; and the mode of its contacts in which it is read."""
 
     text: str | None
     name: str
@@ -17,7 +17,7 @@ class Source:
     folder: str = ""
 
     def __call__(self, given: dict[str, str], cases: list[str]) -> _core.Model:
-        """Reads the model."""
+        """Reads the model with these values of parameters and scenarios."""
         if self.folder:
             return _core.open_sweep(self.folder).model(given, cases, list(self.mode))
         if self.text is None:

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
 
 def run_of(core: _core.SweepFolder, computing: Callable[[], _core.SweepFolder], number: int, options: dict[str, Any]) -> Run:
-    """Computes the motion from the words of a command, which tell that of a folder of Python, too. `computing` opens the folder for a computation."""
+    """Computes the motion of a case from its options in the words of the command line, also if Python made the folder. `computing`
+    opens the folder for a computation."""
     parameters: dict[str, str] = {}
     scenarios: list[str] = []
     initial: dict[str, str] = {}
@@ -29,7 +30,7 @@ def run_of(core: _core.SweepFolder, computing: Callable[[], _core.SweepFolder], 
         elif option == "case":
             scenarios.append(word)
         elif option in _ORDERS:
-            # --qdot "x'=2" means x', too.
+            # --qdot takes "x'=2" as well as "x=2".
             initial[name.replace("'", "") + _ORDERS[option] if _ORDERS[option] else name] = value
         elif option in _MULTIPLIERS:
             initial[f"lambda.{name}{_MULTIPLIERS[option]}"] = value
@@ -45,7 +46,8 @@ def run_of(core: _core.SweepFolder, computing: Callable[[], _core.SweepFolder], 
 
 
 def _words(core: _core.SweepFolder, computing: Callable[[], _core.SweepFolder], number: int) -> list[tuple[str, str]]:
-    """The options of a case. Where the folder does not keep its numbers, the sweep that Python asked for tells them."""
+    """Returns the options of a case as a command line has them. If the folder lacks the numbers of the case, the sweep that Python made
+    gives them."""
     try:
         return core.words(number)
     except ModelError:
@@ -55,17 +57,17 @@ def _words(core: _core.SweepFolder, computing: Callable[[], _core.SweepFolder], 
 
 
 def runs_through_scenarios(model: Model, vary: Iterable[str]) -> bool:
-    """Whether the name "case" stands for scenarios of the file; a parameter or a coordinate may have that name."""
+    """True if the name "case" stands for scenarios of the file, not for a parameter or a coordinate of that name."""
     return "case" in vary and "case" not in model.parameters and all(coordinate.name != "case" for coordinate in model.coordinates)
 
 
 def model_of(core: _core.SweepFolder, recipe: dict[str, Any]) -> Model:
-    """The model of a folder that Python made."""
+    """Reads the model of a folder that Python made."""
     return _model(core, recipe["set"], recipe["case"])
 
 
 def _model(core: _core.SweepFolder, parameters: Mapping[str, str], scenarios: Sequence[str]) -> Model:
-    """The model of a folder, from its text there and from the files to which the text refers."""
+    """Reads the model of a folder from the copies of its text, and of the files to which the text refers, that the folder keeps."""
     from .model import made
     from .reading import loads
 

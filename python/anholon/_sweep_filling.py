@@ -1,4 +1,4 @@
-"""Computes sweeps in folders: what is asked of one, the parts that are missing, workers of Dask."""
+"""Computes sweeps in folders: the request for a sweep, the parts that are missing, workers of Dask."""
 
 from __future__ import annotations
 
@@ -35,13 +35,14 @@ Words = tuple[
     list[str],
     tuple[str, str],
 ]
-"""What is asked of a sweep: values, laws, cases, seed, draw, together, to, tolerance, at, columns, reduce, the name and the text of a table."""
+"""The request for a sweep: values, laws, cases, seed, draw, together, to, tolerance, at, columns, reduce, (name, text) of a table."""
 
 
 def number_of_cases(
     values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int | None, together: bool, scenarios: str | None = None, table: str = ""
 ) -> float | None:
-    """How many cases a sweep has; None if that is not known before it begins. `scenarios` is the name that stands for scenarios, if one does."""
+    """Returns the number of cases of a sweep; None if it is not known before the sweep begins. `scenarios` is the name that stands for
+    scenarios, if there is one."""
     named = [of for name, of in values if name == scenarios]
     if named:
         rest = number_of_cases([(name, of) for name, of in values if name != scenarios], laws, cases, together, None, table)
@@ -58,12 +59,12 @@ def number_of_cases(
     return float(math.prod(int(laws[name].rpartition(":")[2]) if name in laws else len(of) for name, of in values))
 
 
-_MOST_TASKS = 10_000  # of one call: a scheduler holds some kB for each
-_ATTEMPTS = 5  # rounds in which no part was added before the trouble of the workers is raised
+_MOST_TASKS = 10_000  # the most tasks of one call: a scheduler needs some kB for each
+_ATTEMPTS = 5  # after so many rounds in which no part was added, the error of the workers is raised
 
 
 class SweepRequest:
-    """What is asked of a sweep, in words that another process understands."""
+    """The request for a sweep, in words that another process can read."""
 
     def __init__(self, model: Model, form: str, initial: dict[str, str], words: Words) -> None:
         self._model, self._form, self._initial, self._words = model, form, initial, words
@@ -82,7 +83,7 @@ class SweepRequest:
         refine: int,
         refine_by: tuple[str, float] | None,
     ) -> SweepFolder:
-        """Opens the folder or makes it, and computes what is missing there."""
+        """Opens the folder or makes it, and computes the parts that are missing."""
         if refine > 0 and self._scenarios and len(dict(self._words[0])["case"]) > 1:
             raise no_grid()
         core = self.open(folder, chunk, rule_of(refine, refine_by))
@@ -90,7 +91,7 @@ class SweepRequest:
         return fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by)
 
     def open(self, folder: str, chunk: int, rule: str | None = None) -> _core.SweepFolder:
-        """Opens the folder or makes it, if the sweep can be refined by the rule."""
+        """Opens the folder or makes it. Raises ModelError if the sweep cannot be refined by the rule."""
         system = None if self._scenarios else self._model._system_of_sweep(self._form, self._initial)
         if system is None:
             return _core.sweep_scenarios_into(self._model._core, self._form, self._initial, self._words, folder, chunk, self._recipe(), rule)
@@ -105,7 +106,7 @@ class SweepRequest:
 
 
 def rule_of(refine: int, refine_by: tuple[str, float] | None) -> str | None:
-    """The rule by which a sweep is refined, as a word; None if it is not."""
+    """Returns the rule by which a sweep is refined, as a word; None if it is not refined."""
     if refine_by is not None and refine < 1:
         raise ModelError("refine_by tells what a border is, and refine how often it is refined\nhint: refine=4")
     if refine < 1:
@@ -114,11 +115,11 @@ def rule_of(refine: int, refine_by: tuple[str, float] | None) -> str | None:
 
 
 def no_grid() -> ModelError:
-    """The error of a sweep over several scenarios whose borders are to be refined."""
+    """Returns the error for a sweep over several scenarios whose borders are to be refined."""
     return ModelError('the cases of a file are no grid, and refine has nothing to halve\nhint: a sweep of each case: model.with_(case="NAME").sweep(...)')
 
 
-# The equations of a sweep are derived once in a process. What this holds is let go of before the core is taken down.
+# Open sweeps, so that a process derives the equations of each once. They are destroyed before the core is unloaded.
 _opened: dict[tuple[str, bytes], _core.SweepFolder] = {}
 atexit.register(_opened.clear)
 
@@ -127,14 +128,14 @@ def _key(folder: str) -> tuple[str, bytes]:
     import hashlib
 
     path = os.path.realpath(folder)
-    # A folder of an earlier version has the second name.
+    # Folders of earlier versions have the file sweep.json.
     names = [os.path.join(path, name) for name in ("_sweep.json", "sweep.json")]
     with open(next(filter(os.path.exists, names), names[0]), "rb") as file:
         return path, hashlib.sha256(file.read()).digest()
 
 
 def computing(folder: str) -> _core.SweepFolder:
-    """The sweep of a folder, ready to be computed, from what its _sweep.json says."""
+    """Returns the sweep of a folder, ready to be computed, as its _sweep.json describes it."""
     looked_at = _core.open_sweep(folder)
     key = _key(folder)
     if key not in _opened:
@@ -144,7 +145,7 @@ def computing(folder: str) -> _core.SweepFolder:
         model = model_of(looked_at, recipe)
         words = recipe["words"]
         words[0] = [(name, values) for name, values in words[0]]
-        # The request of the folder holds the table.
+        # The table is kept with the request of the folder, not in the recipe.
         words.append(("the table", looked_at.asked("table of cases")))
         while len(_opened) >= 4:
             _opened.pop(next(iter(_opened)))
@@ -163,12 +164,12 @@ def fill(
     refine: int = 0,
     refine_by: tuple[str, float] | None = None,
 ) -> SweepFolder:
-    """Computes what is missing, and plans generations until there are `refine` of them after the first, or no border is left."""
+    """Computes the parts that are missing, and plans generations until there are `refine` after the first, or no border is left."""
     rule = rule_of(refine, refine_by)
     if rule is not None and "case_name" in core.columns and "," in core.asked("vary case"):
         raise no_grid()
     if rule is not None:
-        core.refine(rule, 0)  # plans nothing, and tells before the first case is computed whether it can be refined
+        core.refine(rule, 0)  # plans nothing: raises before the first case is computed if the sweep cannot be refined
     while True:
         folder = _fill_generation(core, on=on, share=share, threads=threads, stop=stop, progress=progress)
         # Other shares may have parts to compute before the borders are known; other processes may plan the same generation.
@@ -201,7 +202,7 @@ def _fill_generation(
 
 
 def fill_parts(folder: str, parts: list[int], threads: int) -> int:
-    """The task of a worker: computes parts, and returns how many cases it computed.
+    """Computes parts, as the task of a worker, and returns the number of cases that it computed.
 
     Raises:
         OSError: a part could not be written.
@@ -220,12 +221,12 @@ def _fill_by_workers(
     stop: Callable[[], object] | None,
     tell: Callable[[float, int], object] | None,
 ) -> None:
-    """Gives parts to the workers of Dask until all are there. The folder says what is done, not the scheduler."""
+    """Gives parts to the workers of Dask until all parts are complete. The folder, not the scheduler, tells which parts are."""
     from asyncio import CancelledError
 
     import distributed
 
-    # Its functions have no types.
+    # The functions of distributed have no types.
     api: Any = distributed
     try:
         client = api.Client(on) if isinstance(on, str) else on

@@ -1,4 +1,4 @@
-"""Sweeps drawn by Matplotlib: curves over the number that varies, maps over two."""
+"""Figures of sweeps by Matplotlib: curves over one name that varies, maps over two."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ MOST_CURVES = 8
 
 
 def not_drawn(table: Columns, varied: Sequence[str], shown: Sequence[str]) -> list[str]:
-    """What varies, without the columns that have another value in each case beside a grid: over the grid numbers are quantiles."""
+    """Returns the columns that may be axes. If there is a grid, columns with a different value in each case are left out, as the figure
+    shows quantiles over the grid."""
     if any(table[name].dtype == object for name in shown):
         return list(varied)
     different = {name: np.unique(table[name]).size for name in varied if table[name].dtype != object}
@@ -29,12 +30,12 @@ def not_drawn(table: Columns, varied: Sequence[str], shown: Sequence[str]) -> li
 
 
 def ending(outcome: str, event: str) -> str:
-    """The outcome of a case; of one that finished by an event, the event."""
+    """Returns the outcome of a case, or the event if an event ended a case that finished."""
     return f"event {event}" if event and outcome == "finished" else outcome
 
 
 def axes_of(varied: Sequence[str], x: str | None, y: str | None) -> list[str]:
-    """The columns along the axes: those that are named, then those that vary, two at most."""
+    """Returns the columns along the axes: those that are named, then those that vary, two at most."""
     given = [name for name in (x, y) if name is not None]
     axes = (given + [name for name in varied if name not in given])[: max(2, len(given))]
     if not axes:
@@ -45,7 +46,7 @@ def axes_of(varied: Sequence[str], x: str | None, y: str | None) -> list[str]:
 
 
 def curves(ax: Any, table: Columns, x: str, names: Sequence[str], units: Mapping[str, str]) -> None:
-    """Columns over x; where several cases have the same x, their median, in a band from 10 to 90 %."""
+    """Draws columns over x. If several cases have the same x, it draws their median in a band from the 10 % to the 90 % quantile."""
     for name in names:
         if table[name].dtype == object:
             raise ModelError(f"one variation shows numbers, and {name!r} holds words\nhint: name columns of numbers")
@@ -65,7 +66,7 @@ def curves(ax: Any, table: Columns, x: str, names: Sequence[str], units: Mapping
 
 
 def map_over(ax: Any, table: Columns, axes: Sequence[str], name: str, units: Mapping[str, str]) -> None:
-    """One column by the colours of points over two others."""
+    """Draws one column as the colours of points over two other columns."""
     x, y = (table[axis] for axis in axes)
     values = table[name]
     if values.dtype == object:
@@ -79,7 +80,7 @@ def map_over(ax: Any, table: Columns, axes: Sequence[str], name: str, units: Map
 
 
 def plot_folder(folder: SweepFolder, names: list[str], x: str | None, y: str | None, ax: Any) -> Any:
-    """The parts of a folder that are there: curves over t where cases have several rows, else over what varies, or a map."""
+    """Draws the complete parts of a folder: curves over t if cases have several rows, else curves or a map over the names that vary."""
     shown = names or ["outcome"]
     for name in [*shown, *(axis for axis in (x, y) if axis is not None)]:
         if name not in folder:
@@ -130,7 +131,7 @@ def plot_folder(folder: SweepFolder, names: list[str], x: str | None, y: str | N
 
 
 def cases_over(ax: Any, table: Columns, x: str, names: Sequence[str], varied: Sequence[str], units: Mapping[str, str]) -> None:
-    """A curve of each case and column over x."""
+    """Draws a curve of each case and column over x."""
     numbers = table["case"]
     for case in np.unique(numbers):
         rows = numbers == case
@@ -146,6 +147,6 @@ def cases_over(ax: Any, table: Columns, x: str, names: Sequence[str], varied: Se
 
 
 def label(name: str, units: Mapping[str, str]) -> str:
-    """The name of a column with its unit; an initial value x(0) has that of x."""
+    """Returns the name of a column with its unit. The unit of an initial value x(0) is that of x."""
     unit = units.get(name.removesuffix("(0)"), "")
     return name.replace("$", r"\$") + (f" [{unit}]" if unit else "")

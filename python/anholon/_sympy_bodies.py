@@ -1,4 +1,4 @@
-"""Bodies of ``sympy.physics.mechanics`` as elements of a model file: their axes, their inertia, and the velocity of what they lose."""
+"""Bodies of ``sympy.physics.mechanics`` as elements of a model file: axes, inertia, and the velocity of matter that they lose."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 @dataclass
 class Turned:
-    """How a body turns."""
+    """The rotation of a body."""
 
-    spin: Any  # its angular velocity along the inertial axes
-    rotation: Any  # of its axes against the inertial ones
-    inertia: Any  # along its axes
-    factors: list[Any]  # whose product is the rotation
+    spin: Any  # angular velocity of the body, along the inertial axes
+    rotation: Any  # rotation matrix from the axes of the body to the inertial axes
+    inertia: Any  # inertia matrix along the axes of the body
+    factors: list[Any]  # rotation matrices whose product is the rotation
     oriented: bool = True  # whether SymPy knows the rotation
-    angles: list[Any] | None = None  # of a sphere without axes: what has the components of its angular velocity as rates
+    angles: list[Any] | None = None  # of a sphere without axes: expressions whose rates are the components of its angular velocity
 
     @property
     def own(self) -> Any:
-        """Its angular velocity along its axes."""
+        """The angular velocity of the body along its own axes."""
         return self.rotation.T * self.spin
 
 
@@ -43,21 +43,21 @@ class Bodies:
         self._turned: dict[int, Turned | None] = {}
 
     def spin(self, body: Any) -> list[Any]:
-        """The components of the angular velocity along the inertial axes; empty if a body does not turn."""
+        """Returns the components of the angular velocity along the inertial axes; an empty list if the body does not turn."""
         made = self._made
         found = [] if is_particle(body) else made.components(body.frame.ang_vel_in(made.parts.frame))
         return found if any(found) else []
 
     def turned(self, body: Any) -> Turned | None:
-        """How a body turns whose speeds are known, with its inertia; None if it does not turn or has none."""
+        """Returns the rotation and inertia of a body whose speeds are known; None if it does not turn or has no inertia."""
         if id(body) not in self._turned:
             spin = self.spin(body)
             self._turned[id(body)] = self._read(body, sympy_module().Matrix(spin)) if spin else None
         return self._turned[id(body)]
 
     def _read(self, body: Any, spin: Any) -> Turned | None:
-        """A frame that only has an angular velocity is that of a sphere, or that of a wheel, if the inertia is given along the
-        axes of another frame in which it turns about an axis of symmetry."""
+        """Reads the rotation and inertia of a body. A frame that has an angular velocity only is accepted for a sphere, and for a wheel:
+        a body whose inertia is given along the axes of another frame, in which it turns about an axis of symmetry."""
         made, sm = self._made, sympy_module()
         frame = made.parts.frame
         try:
@@ -93,7 +93,7 @@ class Bodies:
         return Turned(spin, turn * about, inertia, [*factors_between(frame, carrier), about], False)
 
     def _angle(self, wish: str, rate: Any) -> Any:
-        """An expression with this rate, or a coordinate that a constraint gives this rate."""
+        """Returns an expression with this rate, or a new coordinate to which a constraint gives this rate."""
         made = self._made
         if vanish([rate], {}):
             return sympy_module().Integer(0)
@@ -104,11 +104,11 @@ class Bodies:
         return whole
 
     def entry(self, body: Any, given: Mapping[Any, Any]) -> str:
-        """The entry of a body or particle."""
+        """Returns the entry of a body or particle in the model file."""
         made, w = self._made, self._made.writer
         point, turned = center_of(body), self.turned(body)
         if turned is None and not any(made.components(point.vel(made.parts.frame))):
-            return ""  # what does not turn has no use for an inertia, what rests none for a mass
+            return ""  # a body that does not turn needs no inertia, and one at rest no mass
         name = w.new(str(body.name))
         center, mass = json.dumps(made.center(point)), json.dumps(w.formula(body.mass))
         if turned is None:
@@ -129,8 +129,8 @@ class Bodies:
         return f'{{weight = {json.dumps(formula(short_decimal(axis["weight"])))}, vector = {json.dumps([formula(x) for x in axis["vector"]])}}}'
 
     def _inertia(self, body: Any, turned: Turned, given: Mapping[Any, Any]) -> str:
-        """The line of the inertia: a number for a body that turns about its own z axis, a matrix, or weighted axes for moments
-        that no body has. Moments that do not act are then those of a body with the same motion."""
+        """Returns the line of the inertia: a number for a body that turns about its own z axis, a matrix, or weighted axes for moments
+        that no body can have. Moments that do not act on the motion are replaced by those of a body with the same motion."""
         sm, formula = sympy_module(), self._made.writer.formula
         inertia, acting = turned.inertia, [k for k in range(3) if not vanish([turned.own[k]], {})]
         others_are_zero = all(x == 0 for i, row in enumerate(inertia.tolist()) for j, x in enumerate(row) if (i, j) != (2, 2))
@@ -141,7 +141,7 @@ class Bodies:
             if not possible(inertia, given, acting):
                 if len(acting) > 1 and not self._keeps_its_axis(turned):
                     self._warn(body, turned)
-                # In the fractions of the decimals, so that no rounding of sums stands in the text.
+                # The decimals become fractions, so that sums in the text are not rounded.
                 inertia = exact(inertia)
                 weights, turn = [inertia.trace() / 2 - inertia[k, k] for k in range(3)], turned.rotation
                 axes = []
@@ -155,7 +155,7 @@ class Bodies:
         return f"inertia = {json.dumps([[formula(sm.sympify(x)) for x in row] for row in inertia.tolist()])}"
 
     def _keeps_its_axis(self, turned: Turned) -> bool:
-        """Whether a body turns about one axis that rests in it, so that one moment acts."""
+        """True if the body turns about one axis that is fixed in the body, so that one moment acts."""
         import mpmath
 
         draw, listed = random.Random(4), atoms_of(turned.own)
@@ -184,7 +184,8 @@ class Bodies:
         )
 
     def _expelled(self, body: Any) -> str:
-        """The velocity of the matter that a body of varying mass loses: that matter rests, since SymPy's force is d/dt (m v)."""
+        """Returns the line of the velocity of the matter that a body of varying mass loses. That matter is at rest, since SymPy's force
+        is d/dt (m v)."""
         made = self._made
         velocity = made.components(center_of(body).vel(made.parts.frame))
         if sympy_module().sympify(body.mass).diff(made.time) == 0 or not any(velocity):
@@ -193,8 +194,9 @@ class Bodies:
 
 
 def _of_the_same_motion(inertia: Any, acting: list[int]) -> Any:
-    """An inertia with the same moments and products about the axes that the angular velocity has components along, as a flat
-    body has it: of one along z J/2, J/2, J; of two the sum of their moments about the third."""
+    """Returns the inertia of a flat body that has the same motion: the moments and products about the axes in `acting`, along which the
+    angular velocity has components, are kept. With one such axis and its moment J, the two other moments are J/2; with two such
+    axes, the third moment is the sum of their moments."""
     made = inertia.as_mutable()
     if len(acting) == 1:
         made = sympy_module().eye(3) * inertia[acting[0], acting[0]] / 2
@@ -207,7 +209,8 @@ def _of_the_same_motion(inertia: Any, acting: list[int]) -> Any:
 
 
 def _without_what_cancels(e: Any) -> Any:
-    """An expression without the coordinates, and the time, on which it does not depend: J for J (sin(q)^2 + cos(q)^2)."""
+    """Returns an expression without the coordinates on which its value does not depend, and without the time, if its value does not
+    depend on it: J for J (sin(q)^2 + cos(q)^2)."""
     sm, time = sympy_module(), mechanics_module().dynamicsymbols._t
 
     def without(x: Any) -> Any:
@@ -220,8 +223,9 @@ def _without_what_cancels(e: Any) -> Any:
 
 
 def possible(inertia: Any, given: Mapping[Any, Any], acting: list[int]) -> bool:
-    """Whether a body may have this inertia: it varies, or no moment is negative or more than the sum of the two others, with the values
-    that are given and some of the other symbols. A negative moment that acts is left to the model, which refuses it."""
+    """True if a body may have this inertia: the inertia varies, or no principal moment is negative or more than the sum of the two others,
+    for the values that are given and some random values of the other symbols. Also true if a moment that acts is negative: the model
+    refuses it."""
     import mpmath
 
     sm = sympy_module()

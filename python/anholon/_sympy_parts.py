@@ -1,6 +1,7 @@
-"""What the objects of ``sympy.physics.mechanics`` have in common, read from a KanesMethod, LagrangesMethod or System.
+"""Reads the parts that the objects of ``sympy.physics.mechanics`` have in common from a KanesMethod, LagrangesMethod or System.
 
-The functions behind decide with numbers of many digits: whether expressions vanish, where constraints hold, and whose rate a velocity is.
+Further functions decide with numbers of many digits whether expressions vanish, find states that satisfy the constraints, and find an
+expression whose rate is a given velocity.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from typing import Any
 from ._errors import ModelError
 from ._numbers import text_of
 
-_LONGEST = 1000  # operations of a velocity whose integral is looked for: to expand 1600 of a rolling disc takes minutes
+_LONGEST = 1000  # the most operations of a velocity whose integral is looked for: expanding the 1600 of a rolling disc takes minutes
 
 
 def sympy_module() -> Any:
@@ -28,23 +29,23 @@ def mechanics_module() -> Any:
 
 
 def is_particle(body: Any) -> bool:
-    """Whether a body has no inertia; a ``Body`` is both a RigidBody and a Particle, and says which it is."""
+    """True if a body has no inertia. A ``Body`` is an instance of both RigidBody and Particle; its ``is_rigidbody`` tells its kind."""
     return not getattr(body, "is_rigidbody", isinstance(body, mechanics_module().RigidBody))
 
 
 def center_of(body: Any) -> Any:
-    """The mass centre of a body or particle."""
+    """Returns the mass centre of a body or particle."""
     return body.masscenter if hasattr(body, "masscenter") else body.point
 
 
 def _inertias_of(body: Any) -> list[Any]:
-    """The mass of a body and the components of its inertia."""
+    """Returns the mass of a body and the components of its inertia."""
     return [body.mass, *(part[0] for part in (() if is_particle(body) else body.central_inertia.args))]
 
 
 @dataclass
 class Parts:
-    """What the objects of SymPy have in common."""
+    """The parts that the objects of SymPy have in common."""
 
     frame: Any
     q: list[Any]
@@ -54,9 +55,9 @@ class Parts:
     loads: list[Any]
     holonomic: list[Any] = field(default_factory=list)
     velocity: list[Any] = field(default_factory=list)
-    acceleration: list[Any] = field(default_factory=list)  # constraints that were told beside the rates of those of velocities
+    acceleration: list[Any] = field(default_factory=list)  # those given beside the velocity constraints, not derived from them
     auxiliary: list[Any] = field(default_factory=list)  # speeds that are zero
-    lagrangian: Any = None  # where no bodies tell the inertia
+    lagrangian: Any = None  # if the inertia does not follow from bodies
     by_energies: bool = False  # whether the equations are Lagrange's of these bodies
 
 
@@ -92,7 +93,7 @@ def parts_of(method: Any) -> Parts:
 
 
 def names_in(parts: Parts) -> set[str]:
-    """The names of all symbols and given functions of time in the parts."""
+    """Returns the names of all symbols and given functions of time in the parts."""
     sm = sympy_module()
     found = [*parts.kinematic, *parts.holonomic, *parts.velocity, *parts.acceleration, *([] if parts.lagrangian is None else [parts.lagrangian])]
     vectors = [x for load in parts.loads for x in load if hasattr(x, "to_matrix")]
@@ -123,7 +124,7 @@ def names_in(parts: Parts) -> set[str]:
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """The names that are like one, as the end of a message."""
+    """Returns the end of a message with the known names that are similar to a name; it is empty if there are none."""
     import difflib
 
     near = difflib.get_close_matches(re.sub(r"\(.*\)$", "", name), list(known), 2)
@@ -131,14 +132,15 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def _own_speeds(system: Any) -> tuple[list[Any], list[Any]]:
-    """The speeds of a System that are not the rates of its coordinates, and the equations that tell them."""
+    """Returns the speeds of a System that are no rates of coordinates, and the kinematic equations in which they occur."""
     derivative = sympy_module().Derivative
     speeds = [u for u in system.u if not isinstance(u, derivative)]
     return speeds, [e for e in system.kdes if any(e.has(u) for u in speeds)]
 
 
 def _lagranges_method_of(system: Any) -> Any:
-    """The LagrangesMethod of a System, which is also meant by speeds that are rates; None if it has Kane's equations."""
+    """Returns the LagrangesMethod of a System; None if its equations are Kane's. A System that has rates as speeds and no method yet is
+    taken for one of Lagrange's."""
     mechanics = mechanics_module()
     if system.eom_method is not None:
         return system.eom_method if isinstance(system.eom_method, mechanics.LagrangesMethod) else None
@@ -160,7 +162,7 @@ def _parts_of_kane(method: Any) -> Parts:
         raise ModelError("the KanesMethod has no bodies yet\nhint: call kane.kanes_equations(bodies, loads) before")
     velocity = list(method._k_nh * method.u + method._f_nh) if method._k_nh else []
     rates = sympy_module().Matrix([q.diff(mechanics_module().dynamicsymbols._t) for q in method.q])
-    # The equations as they were written; solved for the rates they may have denominators.
+    # The equations are taken as they were written, since they may have denominators when solved for the rates.
     kinematic = method._k_kqdot_implicit * rates + method._k_ku_implicit * method.u + method._f_k_implicit
     return Parts(
         method._inertial,
@@ -190,7 +192,7 @@ def _parts_of_lagrange(method: Any) -> Parts:
         inertias = [sm.sympify(x) for body in parts.bodies for x in _inertias_of(body)]
         if not any(x.has(q.diff(time)) for x in inertias for q in parts.q) and vanish([energy - kinetic + potential], {}):
             parts.by_energies = True
-            # An energy of the velocities, as that of a charge in a magnetic field, has a force by its rate, too.
+            # The potential of a charge in a magnetic field depends on velocities, so its force has a time derivative, too.
             parts.loads += [(q, real(real(sm.diff(potential, q.diff(time))).diff(time) - sm.diff(potential, q))) for q in parts.q]
             return parts
     parts.bodies, parts.lagrangian = [], energy
@@ -198,7 +200,7 @@ def _parts_of_lagrange(method: Any) -> Parts:
 
 
 def atoms_of(expressions: Iterable[Any]) -> list[Any]:
-    """The symbols, functions of time and rates in expressions, and the time."""
+    """Returns the symbols, functions of time and rates in expressions, and the time, sorted by name."""
     sm = sympy_module()
     atoms: set[Any] = {mechanics_module().dynamicsymbols._t}
     for e in expressions:
@@ -207,7 +209,8 @@ def atoms_of(expressions: Iterable[Any]) -> list[Any]:
 
 
 def real(e: Any) -> Any:
-    """An expression in which all symbols and functions of time are real. SymPy derives Abs(x) by the real part of x."""
+    """Returns an expression without re, im and conjugate, as all symbols and functions of time are real. SymPy brings them in when it
+    differentiates Abs(x)."""
     sm = sympy_module()
     if not e.has(sm.re, sm.im, sm.conjugate):
         return e
@@ -216,7 +219,7 @@ def real(e: Any) -> Any:
 
 
 def numeric(arguments: Iterable[Any], what: Any) -> Any:
-    """A function of mpmath for an expression, a matrix or nested lists of them; rates are arguments of their own."""
+    """Returns a function of mpmath for an expression, a matrix or nested lists of them. Rates are arguments of their own."""
     sm = sympy_module()
     dummies = {a: sm.Dummy() for a in arguments}
 
@@ -226,28 +229,28 @@ def numeric(arguments: Iterable[Any], what: Any) -> Any:
     return sm.lambdify(list(dummies.values()), replaced(what), "mpmath", cse=True)
 
 
-_LONG_DENOMINATOR = 10**12  # of a fraction that was a Float of SymPy's arithmetic
+_LONG_DENOMINATOR = 10**12  # fractions with a larger denominator are taken for Floats that SymPy has rounded
 
 
 def exact(e: Any) -> Any:
-    """The expression with fractions for its Floats, of the decimals that these are written with: 3/10 for 0.3."""
+    """Returns the expression with each Float replaced by the fraction of its decimal: 3/10 for 0.3."""
     sm = sympy_module()
     return e.xreplace({f: sm.Rational(_decimal(f)) for f in e.atoms(sm.Float) if f.is_finite})
 
 
 def short_decimal(e: Any) -> Any:
-    """A fraction as a Float, where the decimal that this is written with is the fraction: 0.012 for 3/250."""
+    """Returns a fraction as a Float if the decimal of the Float is exactly the fraction: 0.012 for 3/250."""
     sm = sympy_module()
     return sm.Float(e) if e.is_Rational and not e.is_Integer and sm.Rational(repr(float(e))) == e else e
 
 
 def _decimal(f: Any) -> str:
-    """The decimal of a Float; of one with the precision of a double the shortest."""
+    """Returns the decimal of a Float; the shortest one if its precision is at most that of a double."""
     return repr(float(f)) if f._prec <= 53 else str(f)
 
 
 def _rounded(expressions: Iterable[Any]) -> dict[Any, tuple[Any, Any]]:
-    """The numbers in expressions that SymPy may have rounded, each with its value and the error that it may have."""
+    """Returns the numbers in expressions that SymPy may have rounded, each with its value and a bound of its error."""
     import mpmath
 
     sm = sympy_module()
@@ -256,7 +259,7 @@ def _rounded(expressions: Iterable[Any]) -> dict[Any, tuple[Any, Any]]:
         if f.is_Float and f.is_finite:
             text = _decimal(f)
             value = mpmath.mpf(text)
-            # What is left of a difference of numbers of size 1 is small and has all digits.
+            # A small number with all digits may be the difference of numbers of size 1, with their absolute error.
             is_rest = abs(value) < 1e-10 and len(re.sub(r"e.*|\D", "", text)) > 13
             found[f] = value, mpmath.mpf(2) ** (3 - f._prec) * (1 if is_rest else abs(value))
         elif f.is_Rational and f.q > _LONG_DENOMINATOR:
@@ -266,8 +269,8 @@ def _rounded(expressions: Iterable[Any]) -> dict[Any, tuple[Any, Any]]:
 
 
 def vanish(expressions: Iterable[Any], near: Mapping[Any, Any]) -> bool:
-    """Whether expressions vanish, with 30 digits, at random values of all that is in them, and at those of ``near``. Where they
-    hold Floats, what the rounding of these makes is none."""
+    """True if expressions vanish at the values of ``near`` and at random values of all other symbols, in arithmetic of 40 digits. If they
+    hold rounded numbers, values that the rounding explains count as zero."""
     import mpmath
 
     sm, draw, expressions = sympy_module(), random.Random(1), list(expressions)
@@ -292,7 +295,7 @@ def vanish(expressions: Iterable[Any], near: Mapping[Any, Any]) -> bool:
 
 
 def rank_of(rows: list[Any], among: Iterable[Any]) -> int:
-    """The rank of rows of numbers, up to the rounding of the expressions they come from."""
+    """Returns the rank of rows of numbers, up to the rounding of the expressions `among` from which they come."""
     sm = sympy_module()
     least = 1e-11 if _rounded(among) else 1e-20
     sizes = [max((abs(x) for x in row), default=0) for row in rows]
@@ -301,8 +304,8 @@ def rank_of(rows: list[Any], among: Iterable[Any]) -> int:
 
 
 def never_zero(e: Any, where: list[Any]) -> bool:
-    """Whether an expression is certainly not zero where the expressions of ``where`` are: what these leave of it has no
-    coordinates, as 1 of the squared length of a quaternion."""
+    """True if an expression certainly has no zero where the expressions of ``where`` vanish: its remainder modulo them is not 0 and
+    holds no coordinates, for example 1 for the squared length of a quaternion."""
     sm = sympy_module()
 
     def polynomial(x: Any) -> tuple[Any, list[Any]]:
@@ -320,18 +323,18 @@ def never_zero(e: Any, where: list[Any]) -> bool:
 
 
 def has_poles(e: Any, where: list[Any]) -> bool:
-    """Whether an expression may have a pole where the expressions of ``where`` are zero."""
+    """True if an expression may have a pole where the expressions of ``where`` are zero."""
     sm = sympy_module()
     return not never_zero(sm.denom(sm.together(e)), where)
 
 
-_LONG = 200  # operations of an expression that is not simplified, which would take seconds
-_LARGE = 3  # unknowns of a system that is solved by determinants
+_LONG = 200  # expressions with as many operations or more are not simplified, which would take seconds
+_LARGE = 3  # the most unknowns of a system that is solved by determinants
 
 
 def solution(a: Any, b: Any, where: list[Any]) -> list[Any]:
-    """The solution of a x = b. Pivots may vanish where the matrix is regular, as those of a rotation: unknowns whose
-    equations hold no other ones are then found by determinants."""
+    """Returns the solution of a x = b. The pivots of LU may vanish where the matrix is regular, for example those of a rotation. The
+    unknowns of a small block that has such poles are found by determinants."""
     sm = sympy_module()
 
     def short(e: Any) -> Any:
@@ -349,7 +352,7 @@ def solution(a: Any, b: Any, where: list[Any]) -> list[Any]:
 
 
 def _blocks(a: Any) -> list[tuple[list[int], list[int]]]:
-    """The rows and columns of the parts of a matrix that have no common entry."""
+    """Returns the rows and columns of the blocks of a matrix. Blocks have no rows or columns in common."""
     left, blocks = set(range(a.cols)), []
     while left:
         columns, rows = {min(left)}, set[int]()
@@ -362,14 +365,15 @@ def _blocks(a: Any) -> list[tuple[list[int], list[int]]]:
 
 
 def with_values(e: Any, values: Mapping[Any, Any]) -> Any | None:
-    """An expression with the values of its symbols, numbers or formulas of others, as far as they are given; None if one has a unit."""
+    """Returns an expression in which the symbols with given values are replaced by them: numbers, or formulas of other symbols. Returns
+    None if SymPy cannot read a value, for example one with a unit."""
     sm, by_name = sympy_module(), {getattr(key, "name", str(key)): value for key, value in values.items()}
     for _ in range(len(values) + 1):
         names = {s.name: s for s in e.free_symbols}
         try:
             known = {s: values.get(s, by_name.get(name)) for name, s in names.items()}
             put = {s: v if isinstance(v, sm.Basic) else sm.sympify(text_of(v), locals=names) for s, v in known.items() if v is not None}
-        except (sm.SympifyError, TypeError, ValueError):  # a value with a unit, or none of SymPy
+        except (sm.SympifyError, TypeError, ValueError):  # a value with a unit, or one that SymPy cannot read
             return None
         if not put:
             break
@@ -378,14 +382,14 @@ def with_values(e: Any, values: Mapping[Any, Any]) -> Any | None:
 
 
 def certainly_positive(e: Any, values: Mapping[Any, Any]) -> bool:
-    """Whether an expression of symbols is positive, by their assumptions or by their values."""
+    """True if an expression of symbols is positive by their assumptions or by their values."""
     found = e if e.is_positive else with_values(e, values)
     return found is not None and bool(found.is_positive)
 
 
 def state_on(holonomic: list[Any], flows: list[Any], q: list[Any], rates: list[Any]) -> dict[Any, Any]:
-    """Random coordinates and rates, with 40 digits, that satisfy constraints, and the values of all else that is in these;
-    empty if Newton's method finds none. The ``flows`` are constraints of velocities and begin with the rates of the holonomic ones."""
+    """Returns random coordinates and rates that satisfy the constraints, and random values of the other symbols in the constraints; an
+    empty dictionary if Newton's method finds none. The ``flows`` are velocity constraints, the rates of the holonomic ones first."""
     import mpmath
 
     sm, draw = sympy_module(), random.Random(7)
@@ -396,7 +400,7 @@ def state_on(holonomic: list[Any], flows: list[Any], q: list[Any], rates: list[A
     f = numeric([*q, *rates, *others], [holonomic, flows, sm.Matrix(flows).jacobian(rates).tolist()])
 
     def satisfied(x: Any, of: Callable[[Any], tuple[Any, Any]]) -> Any:
-        """The zero near x of expressions that are given with their matrix, by steps of least length."""
+        """Returns a zero near x of functions that `of` gives with their Jacobian, by Newton steps of least length, or None."""
         for _ in range(60):
             value, rows = of(x)
             if not value or max(abs(v) for v in value) < mpmath.mpf(10) ** -45:
@@ -418,10 +422,10 @@ def state_on(holonomic: list[Any], flows: list[Any], q: list[Any], rates: list[A
 
 
 def integral_of(rate: Any, q: list[Any], rates: list[Any]) -> Any | None:
-    """An expression of coordinates and time whose rate this is, or None if none is found."""
+    """Returns an expression of coordinates and time whose rate is `rate`, or None if none is found."""
     sm, time = sympy_module(), mechanics_module().dynamicsymbols._t
     if rate.atoms(sm.core.function.AppliedUndef) - set(q):
-        return None  # speeds that are not known yet, or given functions
+        return None  # the rate holds speeds that are not known yet, or given functions
     if (sum_of_them := _sum_of_coordinates(rate, q, rates)) is not None or sm.count_ops(rate) > _LONGEST:
         return sum_of_them
     dummies = [sm.Dummy() for _ in q]
@@ -449,8 +453,8 @@ def integral_of(rate: Any, q: list[Any], rates: list[Any]) -> Any | None:
 
 
 def _sum_of_coordinates(rate: Any, q: list[Any], rates: list[Any]) -> Any | None:
-    """The sum of whole multiples of coordinates whose rate this is, or None. It is found by numbers: a velocity along axes
-    that turn may have thousands of terms that cancel."""
+    """Returns the sum of integer multiples of coordinates whose rate is `rate`, or None if there is none. The multiples are found by
+    numbers, since a velocity along axes that turn may have thousands of terms that cancel."""
     import mpmath
 
     listed, draw = atoms_of([rate]), random.Random(3)
@@ -460,6 +464,6 @@ def _sum_of_coordinates(rate: Any, q: list[Any], rates: list[Any]) -> Any | None
     for c, r in zip(q, rates, strict=True):
         slope = f(*{**at, r: at[r] + 1}.values())[0] - here if r in at else mpmath.mpf(0)
         if not mpmath.isfinite(slope) or abs(slope - (factor := mpmath.nint(mpmath.re(slope)))) > 1e-9:
-            return None  # 1e-9: more than the rounding of 15 digits; the test of the sum has 30
+            return None  # 1e-9 is more than the rounding of 15 digits; vanish() tests the sum with more digits
         whole += int(factor) * c
     return whole if vanish([whole.diff(mechanics_module().dynamicsymbols._t) - rate], {}) else None

@@ -1,6 +1,6 @@
 """Orientations of frames of ``sympy.physics.mechanics`` as rotations of a model file.
 
-A matrix of Floats is a rotation up to their rounding; the model has turns about axes in its place, which are rotations exactly.
+A matrix of Floats is a rotation up to rounding errors. It is replaced by turns about axes, which are exact rotations.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ Formula = Callable[[Any], str]
 
 
 def orientation(turn: Any, factors: list[Any], formula: Formula) -> str:
-    """The formula of a rotation that is the product of these factors."""
+    """Returns the formula of the rotation `turn`, which is the product of the factors."""
     sm = sympy_module()
     if not turn.has(sm.Float):
         return _matrix(turn, formula)
@@ -24,7 +24,7 @@ def orientation(turn: Any, factors: list[Any], formula: Formula) -> str:
 
 
 def factors_between(frame: Any, other: Any) -> list[Any]:
-    """The rotations from one frame to the next, whose product is that from the one to the other."""
+    """Returns the rotations along the chain of frames from `frame` to `other`; their product is the rotation between the two."""
     before: dict[Any, Any] = {frame: None}
     queue = [frame]
     while queue and other not in before:
@@ -46,7 +46,7 @@ def _matrix(turn: Any, formula: Formula) -> str:
 
 
 def _turns(factor: Any, formula: Formula) -> str:
-    """Turns about axes that rest, one after the other, of a rotation of Floats; the matrix itself where it is none."""
+    """Returns a rotation of Floats as a product of turns about fixed axes; as a matrix if there is no such product."""
     sm = sympy_module()
     angles = sorted({a.args[0] for a in factor.atoms(sm.sin, sm.cos) if a.args[0].free_symbols}, key=str)
     dummies = {a: sm.Dummy() for a in angles}
@@ -63,7 +63,7 @@ def _turns(factor: Any, formula: Formula) -> str:
 
 
 def _axis(rotation: Any, angle: Any, angles: list[Any]) -> list[Any] | None:
-    """The axis that rests about which a rotation turns with one of its angles, before the others; None if there is none."""
+    """Returns the fixed axis about which a rotation turns with one of its angles, as the first factor; None if there is no such axis."""
     import mpmath
 
     draw, found = random.Random(8), []
@@ -82,7 +82,7 @@ def _axis(rotation: Any, angle: Any, angles: list[Any]) -> list[Any] | None:
 
 
 def _constant(rotation: Any) -> list[str]:
-    """The turn that a constant rotation is, by its quaternion; none for the unit matrix."""
+    """Returns a constant rotation as a turn, computed by its quaternion; an empty list for the unit matrix."""
     import mpmath
 
     with mpmath.workdps(30):
@@ -100,7 +100,7 @@ def _constant(rotation: Any) -> list[str]:
 
 
 def _turn(axis: list[Any], angle: str) -> str:
-    """A turn about an axis, whose largest component is 1."""
+    """Returns the formula of a turn about an axis, scaled so that its largest component is 1."""
     largest = max(axis, key=abs)
     if largest < 0:
         axis, largest, angle = [-x for x in axis], -largest, f"-({angle})"
@@ -110,7 +110,7 @@ def _turn(axis: list[Any], angle: str) -> str:
 
 
 def _decimal(x: Any) -> str:
-    """A number to the 15 digits of a Float, 0.3 for 0.29999999999999999."""
+    """Returns a number rounded to the 15 digits of a Float: 0.3 for 0.29999999999999999."""
     import mpmath
 
     text = repr(float(str(mpmath.nstr(x, 15))))

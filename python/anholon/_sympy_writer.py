@@ -19,7 +19,7 @@ RESERVED = {"t", "pi", "ex", "ey", "ez", "e", "i", "D", "lambda", "here", "inert
 
 
 def _in_ascii(letter: str) -> str:
-    """A letter as names of a model have it: theta for θ, e for é; other letters stay, and are none of a name."""
+    """Returns a letter in ASCII: theta for θ, e for é. Letters without such a form stay; names of a model cannot hold them."""
     greek = re.fullmatch(r"GREEK (SMALL|CAPITAL) LETTER (?:FINAL )?([A-Z]+)", unicodedata.name(letter, ""))
     if greek:
         return greek[2].lower() if greek[1] == "SMALL" else greek[2].capitalize()
@@ -51,7 +51,7 @@ class Writer:
         self.rates.append(q.diff(self.time))
 
     def new(self, wish: str) -> str:
-        """A name that is not taken yet."""
+        """Returns a name that is not taken yet, similar to `wish`."""
         name = re.sub(r"\W+", "_", "".join(map(_in_ascii, wish)), flags=re.ASCII).strip("_") or "s"
         if name[0].isdigit() or name in self._taken:
             name = "s_" + name
@@ -61,7 +61,7 @@ class Writer:
         return name
 
     def formula(self, e: Any, place: str = "") -> str:
-        """The formula of an expression in coordinates, rates, parameters and the time. Errors name the place, if there is one."""
+        """Returns the formula of an expression in coordinates, rates, parameters and the time. Errors name the place, if it is given."""
         sm = self._sm
         if place:
             try:
@@ -116,7 +116,7 @@ class Writer:
         return self._function(e)
 
     def _function(self, e: Any) -> str:
-        """The formula of a function of SymPy."""
+        """Returns the formula of a function of SymPy."""
         sm, name = self._sm, e.func.__name__
         if isinstance(e, sm.Piecewise):
             return self._piecewise(e)
@@ -128,7 +128,7 @@ class Writer:
             return "0"
         if name not in _SAME | _OTHER_NAMES.keys() | _RECIPROCAL.keys() | _OF_RECIPROCAL.keys():
             if (plain := e.doit()) != e:
-                return self.formula(plain)  # as curves of muscles
+                return self.formula(plain)  # for example the curves of muscles
             raise ModelError(
                 f"{name} in {e} has no counterpart in a model\n"
                 "hint: put a formula of elementary functions or Piecewise in its place, or a function of time that is given by values={f: …}"
@@ -146,7 +146,7 @@ class Writer:
         return f"{_OTHER_NAMES.get(name, name)}({', '.join(arguments)})"
 
     def _piecewise(self, e: Any) -> str:
-        """The pieces, of which the last one holds everywhere."""
+        """Returns the formula of a Piecewise whose last condition is True."""
         *pieces, (last, otherwise) = e.args
         if otherwise != True:  # noqa: E712
             raise ModelError(f"{e} has no value elsewhere\nhint: let it end with (value, True)")
@@ -156,7 +156,7 @@ class Writer:
         return made
 
     def _where(self, condition: Any, value: str, otherwise: str) -> str:
-        """The value where the condition holds."""
+        """Returns the formula that is `value` where the condition holds, else `otherwise`."""
         sm = self._sm
         signs = {sm.StrictGreaterThan: ">", sm.GreaterThan: ">=", sm.StrictLessThan: "<", sm.LessThan: "<="}
         if condition.func in signs:
@@ -184,5 +184,5 @@ class Writer:
 
 
 def name_of(key: Any) -> str:
-    """The name of a symbol, of a function of time without its argument, or a name itself."""
+    """Returns the name of a symbol or of a function of time, without its argument; a text stays."""
     return str(key.func) if getattr(key, "args", ()) else str(key)

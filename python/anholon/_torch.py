@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def torch_function(f: Dynamics) -> Callable[..., Any]:
-    """(t, x, u, p) -> x' of tensors; see :meth:`Dynamics.torch`."""
+    """Returns the function (t, x, u, p) -> x' of tensors; see :meth:`Dynamics.torch`."""
     torch = importlib.import_module("torch")
 
     def array(tensor: Any) -> Any:
@@ -31,13 +31,13 @@ def torch_function(f: Dynamics) -> Callable[..., Any]:
 
     def backward(ctx: Any, w: Any) -> tuple[Any, ...]:
         x, u, p = ctx.saved_tensors
-        gradients: list[Any] = [None]  # none by t
+        gradients: list[Any] = [None]  # no gradient by t
         for by, tensor, needed in zip("xup", (x, u, p), ctx.needs_input_grad[1:], strict=True):
             if tensor is None or not needed:
                 gradients.append(None)
                 continue
             made = f.vjp(ctx.t, array(x), array(w), array(u), array(p), by=by)
-            if made.ndim > tensor.ndim:  # one set of numbers for all states of the batch
+            if made.ndim > tensor.ndim:  # the tensor has one set of numbers for all states of the batch
                 made = made.sum(axis=tuple(range(tensor.ndim, made.ndim)))
             gradients.append(like(made, tensor))
         return tuple(gradients)
@@ -53,7 +53,7 @@ def torch_function(f: Dynamics) -> Callable[..., Any]:
     members = {
         "forward": staticmethod(forward),
         "setup_context": staticmethod(setup_context),
-        # Derivatives of derivatives are not those of the compiled function: autograd refuses them.
+        # The compiled function has no second derivatives, so autograd has to refuse them.
         "backward": staticmethod(torch.autograd.function.once_differentiable(backward)),
         "jvp": staticmethod(jvp),
     }

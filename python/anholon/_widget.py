@@ -5,11 +5,11 @@ from __future__ import annotations
 import pathlib
 from typing import Any
 
-_made: dict[str, Any] = {}  # the class, once anywidget is imported
+_made: dict[str, Any] = {}  # holds the class once anywidget is imported
 
 
 def module() -> str:
-    """The text of the ES module. Raises FileNotFoundError if the package was built without the viewer."""
+    """Returns the text of the ES module. Raises FileNotFoundError if the package was built without the viewer."""
     path = pathlib.Path(__file__).parent / "widget.js"
     try:
         return path.read_text(encoding="utf-8")
@@ -18,14 +18,14 @@ def module() -> str:
 
 
 def available() -> bool:
-    """Whether anywidget can be imported and the module is there."""
+    """True if anywidget can be imported and the package has the module."""
     import importlib.util
 
     return importlib.util.find_spec("anywidget") is not None and (pathlib.Path(__file__).parent / "widget.js").is_file()
 
 
 def widget(data: str, *, plots: bool) -> Any:
-    """A widget that plays the motion of these data (viewer/CONTRACT.md). Needs anywidget."""
+    """Returns a widget that plays the motion of the data (viewer/CONTRACT.md). Needs anywidget."""
     if "Motion" not in _made:
         import anywidget
         import traitlets

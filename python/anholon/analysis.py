@@ -1,4 +1,4 @@
-"""What is asked of a model at a state or over a parameter: published equations compared, a state, linear models, stability."""
+"""Results of analyses of a model: comparisons of published equations, states, linear models, stability."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _DOUBLE = 16  # digits
 
 
 def equation_text(equations: PublishedEquations) -> tuple[str, bool]:
-    """The text of equations or the path of their file, and whether it is a path."""
+    """Returns the text of equations or the path of their file, and True if it is a path."""
     if isinstance(equations, str):
         return equations, "=" not in equations
     if isinstance(equations, os.PathLike):
@@ -62,7 +62,7 @@ class Comparison(Sequence[_core.ComparedEquation]):
 
     @property
     def all_true(self) -> bool:
-        """Whether every equation is proved to be true."""
+        """True if every equation is proved to be true."""
         return all(line.verdict == "true" for line in self.lines)
 
     def __bool__(self) -> bool:
@@ -75,7 +75,7 @@ class Comparison(Sequence[_core.ComparedEquation]):
         return iter(self.lines)
 
     def __getitem__(self, which: Any) -> Any:
-        """An equation by its label or number.
+        """Returns an equation by its label or number.
 
         Raises:
             KeyError: no equation has this label.
@@ -104,8 +104,9 @@ class Comparison(Sequence[_core.ComparedEquation]):
 
 
 class State:
-    """Everything about one state; see :meth:`Model.evaluate`. Numbers are in SI units: ``float``, or with more than 16
-    digits ``mpmath.mpf`` if mpmath is there, else texts.
+    """Forces, accelerations, multipliers, reactions, energies and residuals at one state; see :meth:`Model.evaluate`.
+
+    Numbers are in SI units. They are ``float``; those of more than 16 digits are ``mpmath.mpf`` if mpmath is installed, else texts.
 
     Example:
         >>> import anholon as an
@@ -121,7 +122,7 @@ class State:
         self._again = again  # the model, and the options of Model.evaluate
 
     def __reduce__(self) -> tuple[Any, tuple[Any, dict[str, Any]]]:
-        """Another process evaluates it again, with the same numbers."""
+        """Pickles the model and the options: another process evaluates the state again, with the same numbers."""
         return _evaluated, self._again
 
     def _numbers(self, texts: Sequence[str]) -> list[Any]:
@@ -152,7 +153,7 @@ class State:
 
     @property
     def forces(self) -> dict[str, dict[str, Any]]:
-        """The generalized forces: by their sign of the notation ("Q", "QR", "N", …), then by coordinate."""
+        """The generalized forces by their symbol of the notation ("Q", "QR", "N", …), then by coordinate."""
         return {name: dict(zip(self._coordinates, self._numbers(values), strict=True)) for name, values in self._core.forces}
 
     @property
@@ -172,7 +173,7 @@ class State:
 
     @property
     def mass_matrix(self) -> Any:
-        """d²T/dq'dq', shape (coordinates, coordinates): an array, or lists of numbers with more than 16 digits."""
+        """The mass matrix d²T/dq'dq', shape (coordinates, coordinates): an array, or lists if numbers have more than 16 digits."""
         rows = [self._numbers(row) for row in self._core.mass_matrix]
         if self._digits > _DOUBLE:
             return rows
@@ -219,13 +220,13 @@ class LinearModel:
 
     @property
     def motion(self) -> str:
-        """'equilibrium', 'steady' (coordinates and states without influence move, all else rests), 'unsteady' (A holds for an instant,
-        and its eigenvalues say nothing of stability) or 'unchecked'."""
+        """The kind of the motion: 'equilibrium', 'steady' (only coordinates and states without influence move), 'unsteady' (A holds for an
+        instant, and its eigenvalues tell nothing about stability) or 'unchecked'."""
         return self._core.motion
 
     @property
     def why(self) -> str:
-        """Of an unsteady or unchecked motion: what tells so."""
+        """The reason why a motion is unsteady or unchecked."""
         return self._core.why
 
     @property
@@ -245,22 +246,22 @@ class LinearModel:
 
     @property
     def cyclic(self) -> list[str]:
-        """Those of z that influence nothing, such as the place of a bicycle on the ground."""
+        """The coordinates and states among z that do not influence the core, such as the place of a bicycle on the ground."""
         return self._core.cyclic
 
     @property
     def core(self) -> list[str]:
-        """Those of z that are not cyclic. The eigenvalues are those of A over them."""
+        """The entries of z that are not cyclic. The eigenvalues are those of the rows and columns of A that belong to them."""
         return self._core.core
 
     @property
     def inputs(self) -> list[str]:
-        """What u holds."""
+        """The names of the inputs u."""
         return self._core.inputs
 
     @property
     def outputs(self) -> list[str]:
-        """What y holds."""
+        """The names of the outputs y."""
         return self._core.outputs
 
     @property
@@ -270,32 +271,33 @@ class LinearModel:
 
     @property
     def values(self) -> list[float]:
-        """z at the state, SI."""
+        """The values of z at the state, in SI units."""
         return self._core.values
 
     @property
     def A(self) -> Array:
-        """Shape (states, states)."""
+        """The matrix A of z' = A z + B u, shape (states, states), in SI units."""
         return self._core.A
 
     @property
     def B(self) -> Array:
-        """Shape (states, inputs)."""
+        """The matrix B of z' = A z + B u, shape (states, inputs), in SI units."""
         return self._core.B
 
     @property
     def C(self) -> Array:
-        """Shape (outputs, states). An output that has a unit in the file is in that unit, as in a run; all else is SI."""
+        """The matrix C of y = C z + D u, shape (outputs, states). An output that has a unit in the file is in that unit, as in a run; the
+        rest is in SI units."""
         return self._core.C
 
     @property
     def D(self) -> Array:
-        """Shape (outputs, inputs), in the units of C."""
+        """The matrix D of y = C z + D u, shape (outputs, inputs), in the units of C."""
         return self._core.D
 
     @property
     def eigenvalues(self) -> list[complex]:
-        """Of A over the core, 1/s; a k-fold one k times."""
+        """The eigenvalues of A over the core, 1/s. An eigenvalue of multiplicity k occurs k times."""
         return self._core.eigenvalues
 
     @property
@@ -311,12 +313,12 @@ class LinearModel:
         return np.array(self._core.modes, dtype=np.complex128).reshape(-1, len(self.core))
 
     def exact(self, name: str) -> Any:
-        """A, B, C, D (rows of numbers), ``values`` or ``eigenvalues`` with all the digits that were asked for, as mpmath has
-        them, or as texts without mpmath.
+        """Returns A, B, C, D (as rows), ``values`` or ``eigenvalues`` with all digits that were asked for: numbers of mpmath if it
+        is installed, else texts.
 
         Raises:
             ValueError: no more than 16 digits were asked for.
-            KeyError: the name is none of these.
+            KeyError: `name` is another word.
         """
         if name in ("A", "B", "C", "D"):
             texts = list(getattr(self._core, name + "_texts"))
@@ -360,7 +362,7 @@ class LinearModel:
 
 
 class Stability:
-    """Eigenvalues over values of a parameter, and where they cross the imaginary axis; see :meth:`Model.stability`.
+    """Eigenvalues over values of a parameter, and the values at which they cross the imaginary axis; see :meth:`Model.stability`.
 
     Example:
         >>> import anholon as an
@@ -381,37 +383,37 @@ class Stability:
 
     @property
     def values(self) -> Array:
-        """The values of the parameter, shape (values,), SI."""
+        """The values of the parameter, shape (values,), in SI units."""
         import numpy as np
 
         return np.array(self._core.values)
 
     @property
     def eigenvalues(self) -> ComplexArray:
-        """The eigenvalues as curves, shape (values, curves), 1/s: each column goes on smoothly. NaN where there is none."""
+        """The eigenvalues as curves, shape (values, curves), 1/s: each column is a smooth curve, NaN at values without an eigenvalue."""
         import numpy as np
 
         return np.array(self._core.curves, dtype=np.complex128).reshape(len(self._core.curves), len(self._core.values)).T
 
     @property
     def models(self) -> list[LinearModel | None]:
-        """The linear model at each value, None where `outcomes` tells why there is none."""
+        """The linear model at each value; None at a value without one, for which `outcomes` tells the reason."""
         return [LinearModel(m) if o.ok else None for m, o in zip(self._core.models, self._core.outcomes, strict=True)]
 
     @property
     def outcomes(self) -> list[_core.Outcome]:
-        """How the computation at each value ended."""
+        """The outcome of the computation at each value."""
         return self._core.outcomes
 
     @property
     def crossings(self) -> list[_core.Crossing]:
-        """Where eigenvalues cross the imaginary axis, to round-off, in the order of the values."""
+        """The crossings of the imaginary axis, to round-off, in the order of the values."""
         return self._core.crossings
 
     @property
     def stable(self) -> npt.NDArray[np.bool_]:
-        """Whether no eigenvalue has a positive real part, shape (values,). False where there is no linear model, and where the
-        state is not steady: its eigenvalues say nothing of stability."""
+        """True where no eigenvalue has a positive real part, shape (values,). False where there is no linear model, and where the
+        state is not steady, since its eigenvalues tell nothing about stability."""
         import numpy as np
 
         eigenvalues = self.eigenvalues

@@ -13,7 +13,8 @@ from .model import Model
 from .reading import loads
 
 On = Union[Expr, str, "tuple[Any, Any]"]
-"""On what a force acts: a body or particle, at its centre, or ``(body, place)``. Three components are along the body's axes."""
+"""The point at which a force acts: the centre of a body or particle, or ``(body, place)``. A place of three components is along the
+body's axes."""
 
 
 def _directions(along: Any) -> Any:
@@ -28,7 +29,7 @@ class Constraint:
 
     @property
     def multiplier(self) -> Expr:
-        """Its multiplier, for monitors, outputs and events. Of a vector constraint: ``multiplier.x``."""
+        """The multiplier of the constraint, for monitors, outputs and events. A vector constraint has ``multiplier.x`` and so on."""
         return _named(f"lambda.{self.name}")
 
     def __repr__(self) -> str:
@@ -36,11 +37,12 @@ class Constraint:
 
 
 class Builder:
-    """Writes a model in Python expressions; :meth:`model` gives the immutable :class:`Model`, `text` its file.
+    """Writes a model in Python expressions. :meth:`model` returns the immutable :class:`Model`, `text` is its file.
 
-    Every method adds an element as a section of a model file has it (doc/language.md) and returns its name as an expression.
-    A text is a formula of the model language and stands wherever an expression may. Numbers are exact: an ``int``, a
-    ``Fraction`` or a ``Decimal`` as it is, a ``float`` as the decimal that Python prints.
+    Methods add the elements of the sections of a model file (doc/language.md). Names that formulas may hold, such as those of
+    coordinates, parameters and bodies, are returned as expressions. A text is a formula of the model language and may stand in
+    place of an expression. Numbers are exact: a ``float`` stands for the decimal that Python prints, an ``int``, a ``Fraction``
+    or a ``Decimal`` for its value.
 
     Example:
         >>> import anholon as an
@@ -61,7 +63,7 @@ class Builder:
         self.title: str = title
         self._file = ModelFile(title, source)
 
-    # ---- what is written ----
+    # ---- the text, the model ----
 
     @property
     def text(self) -> str:
@@ -69,14 +71,14 @@ class Builder:
         return self._file.text
 
     def model(self, *, check: bool = False) -> Model:
-        """The model.
+        """Returns the model.
 
         Args:
-            check: also looks whether the initial state is consistent.
+            check: True checks that the initial state is consistent, too.
 
         Raises:
-            ModelError: mistakes, each with the line of Python that wrote the element; ``.diagnostics`` have their places in
-                `text`.
+            ModelError: the model has mistakes; the message names the line of Python that wrote each of them, ``.diagnostics``
+                its place in `text`.
             MotionError: with `check`, no state satisfies the constraints with the values given.
 
         Example:
@@ -117,26 +119,26 @@ class Builder:
         return tuple(self.coordinate(name) for name in listed)
 
     def dependent(self, *coordinates: Term) -> None:
-        """Coordinates that forms without multipliers eliminate; chosen without."""
+        """Names the coordinates that forms without multipliers eliminate. Without a call the program chooses them."""
         self._file.add_to_head("dependent", value_text(coordinates))
 
     def parameter(self, name: str, value: Term, *, unit: str = "", doc: str = "") -> Expr:
-        """Adds a constant: a number, a text with a unit ("8 cm"), or a formula of other parameters."""
+        """Adds a parameter; its value is a number, a text with a unit ("8 cm"), or a formula of other parameters."""
         self._entry("parameters", name, {"value": value, **_given(unit=unit, doc=doc)} if unit or doc else value)
         return _named(name)
 
     def parameters(self, **values: Term) -> tuple[Expr, ...]:
-        """Adds constants: ``m, R = b.parameters(m=1, R="8 cm")``."""
+        """Adds parameters: ``m, R = b.parameters(m=1, R="8 cm")``."""
         return tuple(self.parameter(name, value) for name, value in values.items())
 
     def function(self, name: str, value: Term | None = None, *, arguments: Sequence[str] = ()) -> Expr:
-        """Adds a function of time, or of arguments: then ``an.call(name, …)`` is its value. Without a value it is unknown, and
-        nothing is integrated."""
+        """Adds a function of time, or of arguments, whose value is then ``an.call(name, …)``. A function without a value is unknown:
+        the model has equations, but cannot be integrated."""
         self._entry("functions", f"{name}({', '.join(arguments)})" if arguments else name, {} if value is None else value)
         return _named(name, "coordinate" if not arguments else "vector")
 
     def define(self, name: str, value: Term) -> Expr:
-        """Gives a formula a name, which equations print. The type of the expression is that of the formula."""
+        """Gives a formula a name, which equations print. The expression that is returned has the type of the formula."""
         self._entry("define", name, value)
         of = value if isinstance(value, Expr) else expr(value)
         return type(of)(name, 4, ("name", name, "vector")) if isinstance(of, (Rotation, Place)) else _named(name, "formula", of)
@@ -151,7 +153,7 @@ class Builder:
         self._entry("point", name, position)
         return Place(name, 4, ("name", name, "vector"))
 
-    # ---- what has mass ----
+    # ---- bodies, particles ----
 
     def body(
         self,
@@ -170,16 +172,16 @@ class Builder:
         """Adds a body.
 
         Args:
-            name: also the name of the frame of its axes.
-            center: its mass centre.
-            mass: may depend on time, states, coordinates and velocities.
+            name: the name of the body and of the frame of its axes.
+            center: the mass centre.
+            mass: the mass; it may depend on time, states, coordinates and velocities.
             inertia: a number (plane, about z), three moments or a matrix, along the body's axes at the mass centre.
-            orientation: of its axes, or
-            angle: of ``rotz(angle)``.
-            shape: a homogeneous solid, ``"disc(R)"``, instead of an inertia.
-            axes: expert form instead of an inertia: a list of ``{"weight": …, "vector": …}``.
-            expelled_velocity: of matter that leaves or joins, relative to the material point at `exit_point`.
-            exit_point: where it does; three components are along the body's axes.
+            orientation: the rotation of the body's axes.
+            angle: instead of `orientation`: the angle of ``rotz(angle)``.
+            shape: instead of `inertia`: a homogeneous solid, ``"disc(R)"``.
+            axes: instead of `inertia`, for experts: a list of ``{"weight": …, "vector": …}``.
+            expelled_velocity: the velocity of matter that leaves or joins, relative to the material point at `exit_point`.
+            exit_point: the point at which the matter leaves or joins; three components are along the body's axes.
         """
         self._element(
             "body",
@@ -189,7 +191,7 @@ class Builder:
         return Body(name, 4, ("name", name, "vector"))
 
     def particle(self, name: str, *, mass: Term, position: Term, expelled_velocity: Term | None = None) -> Place:
-        """Adds a particle; it is a point."""
+        """Adds a particle, which is a point, too."""
         self._element("particle", {"name": name, "mass": mass, "position": position, "expelled_velocity": expelled_velocity})
         return Place(name, 4, ("name", name, "vector"))
 
@@ -210,12 +212,12 @@ class Builder:
 
         Args:
             on: a body or particle, or ``(body, place)``.
-            vector: the force.
-            from_: likewise; without it the force acts from outside.
-            torque: a vector.
-            tension: a number, along the line from `on` to `from_`.
-            generalized: instead: ``{coordinate: force}``.
-            name: for reports.
+            vector: the force, a vector.
+            from_: the other body, particle or ``(body, place)``; without it the force acts from outside.
+            torque: the torque, a vector.
+            tension: the tension, a number, along the line from `on` to `from_`.
+            generalized: instead of all these, generalized forces: ``{coordinate: force}``.
+            name: the name in reports.
         """
         given = None if generalized is None else {expr(q).text: value for q, value in generalized.items()}
         self._element(
@@ -224,15 +226,15 @@ class Builder:
         )
 
     def spring(self, on: On, to: On, *, stiffness: Term, length: Term = 0, damping: Term = 0, name: str | None = None) -> None:
-        """Adds a spring with a damper beside it between two bodies, or a body and a point of the observer.
+        """Adds a spring with a parallel damper between two bodies, or between a body and a point of the observer.
 
         Args:
             on: a body or particle, or ``(body, place)`` with a place in the observer's axes.
-            to: likewise, or a :class:`Place` that is no particle.
-            stiffness: N/m.
-            length: at which it does not pull, m.
-            damping: N s/m.
-            name: for reports.
+            to: the other body, particle or ``(body, place)``, or a :class:`Place` that is no particle.
+            stiffness: the stiffness, N/m.
+            length: the length without force, m.
+            damping: the damping coefficient, N s/m.
+            name: the name in reports.
         """
         here, there = _place(on), _place(to)
         distance = norm(here - there)
@@ -250,7 +252,7 @@ class Builder:
         return self._file.has_element("body", name) or self._file.has_element("particle", name)
 
     def gravity(self, field: Term, *, gradient: bool = False) -> None:
-        """The acceleration of gravity at the place ``an.here``, on every mass."""
+        """Sets the acceleration of gravity at the place ``an.here``; it acts on every mass."""
         self._entry("gravity", "field", field)
         if gradient:
             self._entry("gravity", "gradient", True)
@@ -264,7 +266,7 @@ class Builder:
         self._entry("dissipation", name, power)
 
     def table(self, name: str, x: Sequence[Term], y: Sequence[Term], *, fit: str | None = None, outside: str | None = None) -> None:
-        """Adds a function by its values; ``an.call(name, at)`` calls it."""
+        """Adds a function by its values y at x; ``an.call(name, at)`` calls it."""
         keys = {"name": value_text(name)}
         for key, values in (("x", x), ("y", y)):
             keys[key] = "[" + ", ".join(expr(value).text for value in values) + "]"
@@ -281,12 +283,12 @@ class Builder:
         """Adds a constraint ``a == b`` of numbers or vectors, of any order.
 
         Args:
-            name: its multiplier is ``lambda.NAME``.
+            name: the name; the multiplier of the constraint is ``lambda.NAME``.
             equation: ``dot(P.vel(), blade.y) == 0``, or a text.
-            along: of a vector equation: a frame or a list of vectors, along which components are taken.
-            by: the inputs that keep it (servo constraint).
-            active: it holds while this formula of modes is positive.
-            one_sided: it pushes and does not pull: left - right may become positive.
+            along: for a vector equation: a frame or a list of vectors along which its components are taken.
+            by: the inputs that keep the constraint, which is then a servo constraint.
+            active: a formula of modes; the constraint holds while it is positive.
+            one_sided: True for a constraint that pushes and does not pull: left - right may become positive.
         """
         _must_be_equation(equation)
         inputs = None if by is None else [expr(u).text for u in by] if isinstance(by, (list, tuple)) else expr(by).text
@@ -317,25 +319,25 @@ class Builder:
         restitution: Term | None = None,
         impact: str | None = None,
     ) -> Constraint:
-        """Adds a contact that pushes, with Coulomb friction and impacts; the ``multiplier`` of what it returns is the normal force.
+        """Adds a contact that pushes, with Coulomb friction and impacts. The ``multiplier`` of the value returned is the normal force.
 
         Args:
-            name: of its events and columns: ``floor.hits``, ``floor.gap``.
+            name: the name, with which its events and columns begin: ``floor.hits``, ``floor.gap``.
             gap: the distance, which is not negative.
             slip: the relative tangential velocity: a number, a list of two, or a vector with `along`.
             along: the tangential directions of a vector `slip`.
             body: instead of `gap` and `slip`: the body that touches, with its shape.
-            shape: what touches, ``"ball(R)"``; the shape of the body without it.
-            at: the place of what touches; the centre of the body without it.
-            normal: of the plane; ``ez`` without it.
+            shape: the shape that touches, ``"ball(R)"``; that of the body if it is None.
+            at: the place of the shape; the centre of the body if it is None.
+            normal: the normal of the plane; ``ez`` if it is None.
             through: a point of the plane, or the centre of the ball or bowl.
             on: ``"ball(R)"`` or ``"bowl(R)"`` instead of the plane.
             friction: Coulomb's coefficient.
-            static_friction: the coefficient while it sticks.
-            rolling_resistance: a length.
-            drilling_resistance: a length.
-            restitution: from 0 to 1.
-            impact: ``"newton"`` or ``"poisson"``.
+            static_friction: the coefficient while the contact sticks.
+            rolling_resistance: the coefficient of rolling resistance, a length.
+            drilling_resistance: the coefficient of drilling resistance, a length.
+            restitution: the coefficient of restitution, from 0 to 1.
+            impact: the law of impact, ``"newton"`` or ``"poisson"``.
         """
         self._element(
             "contact",
@@ -352,41 +354,41 @@ class Builder:
         return _named(name, "formula", expr(velocity))
 
     def observer(self, **motion: Term) -> None:
-        """How the observer moves: ``spin`` or ``rotation``, and one of ``origin_acceleration``, ``origin_velocity``,
+        """Sets the motion of the observer: ``spin`` or ``rotation``, and one of ``origin_acceleration``, ``origin_velocity``,
         ``origin_velocity_inertial``, ``origin_position_inertial``."""
         for key, value in motion.items():
             self._entry("observer", key, value)
 
     def state(self, name: str, rate: Term, initial: Term = 0) -> Expr:
-        """Adds a number with a rate of its own."""
+        """Adds a state, a number with a rate of its own."""
         self._entry("state", name, {"rate": rate, "initial": initial})
         return _named(name, "coordinate")
 
     def mode(self, name: str, value: Term) -> Expr:
-        """Adds a number that only events change."""
+        """Adds a mode, a number that only events change."""
         self._file.add_entry("mode", name, expr(value).text)
         return _named(name)
 
     def event(
         self, name: str, when: Term, *, direction: str | None = None, set: Mapping[Any, Term] | None = None, stop: bool = False
     ) -> None:
-        """Adds an event where `when` passes zero (``"up"``, ``"down"`` only), which sets modes, states, coordinates and
-        velocities, or ends the motion."""
+        """Adds an event at zeros of `when`, which sets modes, states, coordinates and velocities, or ends the motion. With the
+        direction ``"up"`` or ``"down"`` only zeros at which `when` rises or falls count."""
         given = None if set is None else {expr(q).text: value for q, value in set.items()}
         self._element("event", {"name": name, "when": when, "direction": direction, "set": given, "stop": True if stop else None})
 
     def input(self, name: str, value: Term | None = None) -> Expr:
-        """Adds a control with its formula; without one a constraint keeps it, ``by=``."""
+        """Adds an input with its formula. An input without a formula is determined by a constraint that has it in ``by=``."""
         self._entry("input", name, {} if value is None else value)
         return _named(name, "coordinate")
 
     def output(self, name: str, value: Term, *, unit: str = "", doc: str = "", conserved: bool = False) -> None:
-        """Adds a column of runs: a number or a vector, also of multipliers."""
+        """Adds an output, a column of runs: a number or a vector, which may depend on multipliers."""
         more: dict[str, object] = {**_given(unit=unit, doc=doc), **({"conserved": True} if conserved else {})}
         self._entry("output", name, {"value": value, **more} if more else value)
 
     def monitor(self, name: str, value: Term) -> None:
-        """Adds a number to watch along the motion."""
+        """Adds a monitor, a number that is recorded along the motion."""
         self._entry("monitor", name, value)
 
     def initial(
@@ -398,13 +400,13 @@ class Builder:
         branch: Mapping[str, str] | None = None,
         t: Term | None = None,
     ) -> None:
-        """The initial state: values by coordinate and derivative, ``{x: 1, x.dt: 0}``, and equations that hold there.
+        """Sets the initial state: values by coordinate and derivative, ``{x: 1, x.dt: 0}``, and equations that hold there.
 
         Args:
-            values: numbers or formulas of parameters. What is not given follows from the constraints.
-            conditions: equations, solved together with the constraints.
-            guess: values that are looked for nearby.
-            branch: ``{constraint: "lambda > 0"}`` where there are several solutions.
+            values: numbers or formulas of parameters. The values left out follow from the constraints.
+            conditions: equations that are solved together with the constraints.
+            guess: values near which the solution is looked for.
+            branch: ``{constraint: "lambda > 0"}``, which chooses one of several solutions.
             t: the initial time, s.
 
         Raises:
@@ -427,7 +429,7 @@ class Builder:
             self._entry("initial", "branch", branch)
 
     def simulate(self, **settings: object) -> None:
-        """The settings of [simulate], which :meth:`Model.simulate` uses unless it is told otherwise: ``to=10, every=0.1``."""
+        """Sets the defaults of :meth:`Model.simulate`, the section [simulate]: ``to=10, every=0.1``."""
         for key, value in settings.items():
             written = value_text(value) if isinstance(value, (str, bool, list, tuple)) else expr(value).text
             self._file.add_entry("simulate", key.replace("_", "-"), written)

@@ -1,4 +1,4 @@
-"""What kind of system a model is."""
+"""The kind of system that a model is."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Check:
-    """What kind of system a model is, at its initial state.
+    """The kind of system that a model is: degrees of freedom, kinds of constraints, and the initial state.
 
     Example:
         >>> import anholon as an
@@ -27,12 +27,12 @@ class Check:
         self._core = model._system(form, initial, ())
 
     def __reduce__(self) -> tuple[type[Check], tuple[Model, str, dict[str, str]]]:
-        """Another process looks at the model again."""
+        """Pickles the model and the options: another process makes the check again."""
         return Check, (self.model, self._form, self._initial)
 
     @property
     def degrees_of_freedom(self) -> int:
-        """Velocities that the constraints leave free; coordinates without constraints."""
+        """The number of velocities that the constraints leave free; without constraints the number of coordinates."""
         return self._core.degrees_of_freedom
 
     @property
@@ -42,12 +42,12 @@ class Check:
 
     @property
     def initial(self) -> list[_core.InitialValue]:
-        """The consistent initial state, each value with where it comes from."""
+        """The consistent initial state; each value has its origin."""
         return self._core.initial
 
     @property
     def notes(self) -> list[str]:
-        """Choices that were made for the initial state."""
+        """Notes on choices that the program made for the initial state."""
         return self._core.notes
 
     def __repr__(self) -> str:

@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 
 
 class Dynamics:
-    """A function f(t, x, u, p) -> x' in SI units, with outputs y. Threads may share it; large batches take all cores.
+    """A function f(t, x, u, p) -> x' in SI units, with outputs y. Threads may share it; large batches use all cores.
 
-    Get one from :meth:`Model.dynamics`. It can be pickled, as for the workers of an optimizer: each process derives it again.
+    :meth:`Model.dynamics` returns one. It can be pickled, for example for the workers of an optimizer; each process derives the
+    equations again.
 
     Example:
         >>> import anholon as an
@@ -38,46 +39,46 @@ class Dynamics:
     def __init__(self, model: Model, core: _core.Dynamics, options: dict[str, Any]) -> None:
         self.model: Model = model
         self._core = core
-        self._options = options  # of Model.dynamics
+        self._options = options  # the arguments of Model.dynamics
         self._count = len(core.states)
         self._formulas: Formulas | None = None
 
     def __reduce__(self) -> tuple[Callable[..., Dynamics], tuple[Model, dict[str, Any]]]:
-        """Another process derives the equations again."""
+        """Pickles the model and the options: another process derives the equations again."""
         return _made, (self.model, self._options)
 
     @property
     def states(self) -> list[_core.StateName]:
-        """What x holds: coordinates, velocities (or independent ones, with their formulas), higher derivatives where
-        constraints of order 2 and more ask for them, then the model's states."""
+        """The entries of x: coordinates, velocities (or independent ones, with their formulas), higher derivatives if
+        constraints of order 2 or more need them, then the model's states."""
         return self._core.states
 
     @property
     def inputs(self) -> list[str]:
-        """What u holds: inputs of the model that are arguments."""
+        """The entries of u: the inputs of the model that are arguments."""
         return self._core.inputs
 
     @property
     def parameters(self) -> list[str]:
-        """What p holds: the parameters that do not follow from others, without those whose values decide the order of the
-        equations, such as a mass that is 0. The number of a mode is one of them; f changes none of them, as it holds no events."""
+        """The entries of p: the parameters that do not follow from others, except those whose values decide the order of the
+        equations, such as a mass that is 0. Modes are entries of p, too; f does not change them, as it has no events."""
         return self._core.parameters
 
     @property
     def outputs(self) -> list[str]:
-        """What y holds: the outputs that were asked for, or monitors and outputs of the model. In independent velocities
-        those with multipliers are left out."""
+        """The entries of y: the outputs that were asked for, or the monitors and outputs of the model. In independent velocities
+        outputs with multipliers are left out."""
         return self._core.outputs
 
     @property
     def minimal(self) -> bool:
-        """Whether the velocities are independent ones; ``obstacle`` tells why they are not."""
+        """True if the velocities in x are independent; if not, ``obstacle`` tells why."""
         return self._core.minimal
 
     @property
     def obstacle(self) -> str:
-        """Why the velocities are not independent ones; empty if they are. Constraints then hold along exact solutions alone, and
-        an integrator leaves them slowly.
+        """The reason why the velocities are not independent; empty if they are. If they are not, the constraints hold along exact
+        solutions only, and numerical solutions drift from them slowly.
 
         Example:
             >>> import anholon as an
@@ -89,10 +90,10 @@ class Dynamics:
 
     @property
     def linear(self) -> bool:
-        """Whether the equations are linear in what they are solved for (accelerations, multipliers, …).
+        """True if the equations are linear in the unknowns for which they are solved (accelerations, multipliers, …).
 
-        Where they are not, they may have several solutions. f(t, x, u, p) then follows the solution at the start along the
-        straight line from the start to (t, x, u, p); it is NaN where that solution ends.
+        Nonlinear equations may have several solutions. f(t, x, u, p) then follows the solution at the start along the
+        straight line from the start to (t, x, u, p); it is NaN if that solution ends on the way.
 
         Example:
             >>> import anholon as an
@@ -108,7 +109,7 @@ class Dynamics:
 
     @property
     def start(self) -> Array:
-        """x at the initial state with the parameters of the model, shape (states,); with others :meth:`state` makes it."""
+        """x at the initial state with the parameters of the model, shape (states,). :meth:`state` makes x for other parameters."""
         import numpy as np
 
         return np.array(self._core.start)
@@ -122,13 +123,16 @@ class Dynamics:
 
     @property
     def p0(self) -> Array:
-        """p of the model, shape (parameters,)."""
+        """The values that p has in the model, shape (parameters,)."""
         import numpy as np
 
         return np.array(self._core.parameter_values)
 
     def _values(self, given: Values, names: list[str], usual: Callable[[], Array], what: str, shape: tuple[int, ...] = ()) -> Array | None:
-        """One set of numbers, or one for each state of a batch of this shape. Raises KeyError, ValueError."""
+        """Returns one set of numbers, or one set for each state of a batch of this shape; None if nothing is given.
+
+        Raises KeyError for a name that is not among `names`, and ValueError for a shape that does not fit.
+        """
         labelled = labelled_values(given)
         if labelled is not None:
             labelled = by_spelled_names(labelled, what)
@@ -142,17 +146,17 @@ class Dynamics:
         return None if given is None else array_of_values(given, len(names), what, shape)
 
     def __call__(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None, *, out: Array | None = None) -> Array:
-        """The rates x' of one state, shape (states,), or of many, shape (states, …): the last axes count them.
+        """Returns the rates x' of one state, shape (states,), or of many states, shape (states, …), whose last axes count the states.
 
         Args:
             t: the time, s.
             x: states.
-            u: inputs, shape (inputs,), or (inputs, …) for each state; by the formulas of the model if it is None, and so
-                are those left out of a mapping, by the formulas at (t, x) and the inputs that are given.
+            u: inputs, shape (inputs,), or (inputs, …) for each state. If it is None, the formulas of the model give them at
+                (t, x); the same formulas give the inputs left out of a mapping, with the inputs that are given.
             p: parameters, shape (parameters,), or (parameters, …) for each state; those of the model if it is None.
             out: an array of float64 of the shape of x, in any layout, for the result; a new one if it is None.
 
-        NaN where the equations have no solution. A state has the same bits alone and among others.
+        Rates are NaN where the equations have no solution. The rates of a state have the same bits in every batch.
 
         Raises:
             TypeError: t is not a number, or `out` is not an array of float64.
@@ -171,7 +175,7 @@ class Dynamics:
         given = x if type(x) is np.ndarray and x.dtype == np.float64 and x.flags.c_contiguous else numbers_of("x", x)
         if given.shape[:1] != (self._count,):
             raise ValueError(f"x has the shape {given.shape}; its first axis has to be the {self._count} states")
-        # The core writes to contiguous numbers that x does not share.
+        # The core writes to a contiguous array that shares no memory with x.
         to = out if out is not None and takes_numbers(out, given) else np.empty_like(given)
         if u is None and p is None:
             self._core.rates(time, given, to)
@@ -184,8 +188,8 @@ class Dynamics:
         return out
 
     def _given(self, t: float, x: Array, u: Values, p: Values) -> tuple[Array | None, Array | None]:
-        """Inputs and parameters of these states. Inputs left out of a mapping have the values of their formulas, in which
-        those of the mapping act."""
+        """Returns inputs and parameters of these states. Inputs left out of a mapping have the values of their formulas, which are
+        computed with the inputs of the mapping."""
         import numpy as np
 
         labelled = labelled_values(u)
@@ -214,7 +218,7 @@ class Dynamics:
         return self._values(u if labelled is None else named, self.inputs, usual, "u", x.shape[1:]), others
 
     def _states(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array | None, Array | None, tuple[int, ...]]:
-        """States with their inputs and parameters, and the axes that count them."""
+        """Returns states with their inputs and parameters, and the shape of the axes that count the states."""
         import numpy as np
 
         state = numbers_of("x", x)
@@ -224,7 +228,7 @@ class Dynamics:
         return state, some, others, state.shape[1:]
 
     def output(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None) -> Array:
-        """The outputs y of one state, shape (outputs,), or of many, shape (outputs, …), as ``f(t, x)``.
+        """Returns the outputs y of one state, shape (outputs,), or of many states, shape (outputs, …), with the arguments of ``f(t, x)``.
 
         Example:
             >>> import anholon as an, numpy as np
@@ -238,10 +242,10 @@ class Dynamics:
         return made.reshape((len(made), *batch))
 
     def input(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
-        """The inputs by the formulas of the model, shape (inputs,): the controller of the file.
+        """Returns the inputs by the formulas of the model, its controller, at one state, shape (inputs,).
 
         Raises:
-            ValueError: x has not the shape of one state.
+            ValueError: x does not have the shape of one state.
         """
         import numpy as np
 
@@ -252,21 +256,22 @@ class Dynamics:
         return np.array(self._core.inputs_at(time, state.tolist(), [] if parameters is None else parameters.tolist()))
 
     def jac(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
-        """The exact derivatives of the rates (or outputs), not differences, of one state or of many.
+        """Returns the exact derivatives of the rates (or outputs) at one state or many, not finite differences.
 
         Args:
             t: the time, s.
             x: states, shape (states,) or (states, …).
-            u: inputs, which are held where the derivatives are by x; those of the formulas of the model if it is None.
+            u: inputs, which are held constant in derivatives by x; those of the formulas of the model if it is None.
             p: parameters; those of the model if it is None.
-            by: "x", "u" or "p": shape (rows, states, …), (rows, inputs, …) or (rows, parameters, …).
-            of: "x'": the rates; "y": the outputs.
+            by: "x", "u" or "p", the variable of the derivatives, whose shape is (rows, states, …), (rows, inputs, …) or
+                (rows, parameters, …).
+            of: "x'" for the rates, "y" for the outputs.
 
-        NaN where the equations have no solution, and where a formula has no derivative: at a kink or a jump of abs, min,
-        max, sign, piecewise or a table. A state has the same bits alone and among others.
+        Derivatives are NaN where the equations have no solution, and where a formula has no derivative: at a kink or a jump of
+        abs, min, max, sign, piecewise or a table. Those of a state have the same bits in every batch.
 
         Raises:
-            ValueError: a shape does not fit, or `by` or `of` is something else.
+            ValueError: a shape does not fit, or `by` or `of` is another word.
 
         Example:
             >>> import anholon as an, numpy as np
@@ -283,14 +288,14 @@ class Dynamics:
         return chosen.reshape((*chosen.shape[:2], *batch))
 
     def jvp(self, t: float, x: npt.ArrayLike, v: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
-        """The derivatives times a direction, jac(…) v: shape (rows, …). v has one direction, or one for each state."""
+        """Returns the derivatives times a direction, jac(…) v, shape (rows, …). v is one direction, or one for each state."""
         import numpy as np
 
         jacobian, direction = self._aligned(self.jac(t, x, u, p, by=by, of=of), v, 1)
         return np.asarray(jacobian @ direction if jacobian.ndim == 2 else np.einsum("ij...,j...->i...", jacobian, direction))
 
     def vjp(self, t: float, x: npt.ArrayLike, w: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
-        """A covector times the derivatives, w jac(…): shape (columns, …). w is one covector, or one for each state."""
+        """Returns a covector times the derivatives, w jac(…), shape (columns, …). w is one covector, or one for each state."""
         import numpy as np
 
         jacobian, covector = self._aligned(self.jac(t, x, u, p, by=by, of=of), w, 0)
@@ -306,8 +311,8 @@ class Dynamics:
         return jacobian, array if array.ndim > 1 else array.reshape(array.shape + (1,) * len(batch))
 
     def _equations(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array, Array]:
-        """M, Phi and the right side of  M q'' = Phi^T lambda + right,  in which the rates of the model's states are those of
-        their equations: a thrust, or another force with such a rate, is on the right."""
+        """Returns M, Phi and the right side of  M q'' = Phi^T lambda + right.  The rates of the model's states are eliminated by
+        their equations, so that a thrust, or another force with such a rate, is part of the right side."""
         import numpy as np
 
         if self.minimal:
@@ -324,7 +329,7 @@ class Dynamics:
         right: Array
         unknowns, matrix, right = self._core.equations(time, state, some, others)
         n, rates = len(names), {f"{z}'" for z in self.model.states}
-        end = len(unknowns) - sum(unknown in rates for unknown in unknowns)  # rates that nothing else holds are no unknowns
+        end = len(unknowns) - sum(unknown in rates for unknown in unknowns)  # a rate that no other equation holds is no unknown
         forces, acting = matrix[:n, :n], right[:n]
         if matrix[:n, end:].any():
             rows = np.moveaxis(matrix[end:], 2, 0)
@@ -340,8 +345,8 @@ class Dynamics:
         return of_batch(forces), of_batch(matrix[n:end, :n]), of_batch(acting)
 
     def mass_matrix(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
-        """M of  M q'' + bias = Phi^T lambda,  shape (coordinates, coordinates), or (coordinates, coordinates, …) of many
-        states. The model's own formulas give the inputs.
+        """Returns M of  M q'' + bias = Phi^T lambda,  shape (coordinates, coordinates), or (coordinates, coordinates, …) of many
+        states. The formulas of the model give the inputs.
 
         Raises:
             ModelError: the velocities are independent ones; take ``dynamics(minimal=False)``.
@@ -355,13 +360,13 @@ class Dynamics:
         return self._equations(t, x, None, p)[0]
 
     def bias(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None) -> Array:
-        """What remains of  M q'' + bias = Phi^T lambda:  inertia and forces without accelerations, among them the thrust of
-        expelled matter and forces with the rate of a state, shape (coordinates, …)."""
+        """Returns the bias of  M q'' + bias = Phi^T lambda:  all terms without accelerations and multipliers, among them the thrust
+        of expelled matter and forces with the rate of a state, shape (coordinates, …)."""
         return -self._equations(t, x, u, p)[2]
 
     def constraint_jacobian(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
-        """Phi, the derivatives of the constraints by the velocities (of holonomic ones by the coordinates), shape
-        (constraints, coordinates, …)."""
+        """Returns Phi of  M q'' + bias = Phi^T lambda,  the derivatives of the constraints by the velocities (those of holonomic
+        constraints by the coordinates), shape (constraints, coordinates, …)."""
         return self._equations(t, x, None, p)[1]
 
     @property
@@ -372,20 +377,20 @@ class Dynamics:
         return self._formulas
 
     def c_code(self, name: str = "motion") -> str:
-        """A C file that stands by itself: ``name_rhs(t, x, u, p, dx)``, and in CasADi's external interface ``name``,
-        (t, x, u, p) -> (dx, y), with the sparse Jacobian ``jac_name``. CasADi and acados load it compiled as it is.
+        """Returns a C file that needs no other file. It has ``name_rhs(t, x, u, p, dx)``, and for CasADi's external interface
+        ``name``, (t, x, u, p) -> (dx, y), with the sparse Jacobian ``jac_name``. CasADi and acados load the compiled file.
 
         Raises:
-            ModelError: the equations are not :attr:`linear` in what they are solved for.
+            ModelError: the equations are not :attr:`linear`.
         """
         if not self.linear:
             raise ModelError(NOT_LINEAR)
         return self._core.source(True, name)
 
     def casadi(self, name: str = "motion") -> Any:
-        """The function as a ``casadi.Function`` (t, x, u, p) -> (dx, y), compiled from :meth:`c_code`, with its Jacobian.
+        """Returns a ``casadi.Function`` (t, x, u, p) -> (dx, y), compiled from :meth:`c_code`, with its Jacobian.
 
-        ``f.formulas.casadi()`` is of CasADi's own expressions, which have second derivatives, too.
+        ``f.formulas.casadi()`` returns a function of CasADi's own expressions, which have second derivatives, too.
 
         Raises:
             ModelError: there is no C compiler.
@@ -395,10 +400,10 @@ class Dynamics:
         return casadi.external(name, compile_c(self.c_code(name)))
 
     def torch(self) -> Callable[..., Any]:
-        """The function as one of PyTorch, (t, x, u, p) -> x', whose gradients by x, u and p are :meth:`vjp` and :meth:`jvp`.
+        """Returns a function of PyTorch, (t, x, u, p) -> x', whose gradients by x, u and p are :meth:`vjp` and :meth:`jvp`.
 
-        Tensors have the shapes of ``f(t, x, u, p)``; u and p may be left out. They may have any device and precision: the
-        numbers are computed in double on the processor. Autograd refuses second derivatives and those by t.
+        Tensors have the shapes of ``f(t, x, u, p)``; u and p may be left out. Tensors may have any device and precision; the
+        rates are computed in double precision on the CPU. Second derivatives and derivatives by t are not available.
 
         Raises:
             ModuleNotFoundError: PyTorch is not installed.
@@ -420,27 +425,27 @@ class Dynamics:
         z: Mapping[str, float] | None = None,
         p: Values = None,
     ) -> Array:
-        """x from values of coordinates, velocities ("x'") and states of the model by name; 0 for those left out.
+        """Returns x, shape (states,), for values of coordinates, velocities ("x'") and states of the model by name, in SI units.
 
-        Higher derivatives that belong to the state ("x''") are given with the velocities. In independent velocities, those
-        that violate the constraints lose what violates them; `Model.initial` completes a state from the values that are
-        given. The shape is (states,), in SI units.
+        Values left out are 0. Higher derivatives that belong to the state ("x''") are given with the velocities. In independent
+        velocities, the part of the velocities that violates the constraints is lost; `Model.initial` completes a state from the
+        values that are given.
 
-        Independent velocities may depend on parameters: their formulas in ``f.states`` hold them. The state that belongs to
-        ``f(t, x, p=p)`` is then that of the same ``p``; without it the parameters of the model are meant.
+        Independent velocities may depend on parameters, as their formulas in ``f.states`` show. A state for ``f(t, x, p=p)`` then
+        needs the same ``p``; without `p` it belongs to the parameters of the model.
 
         Args:
-            t: the time, s; that of the start if it is None.
-            q: coordinates; all 0 if it is None.
-            qdot: velocities, and higher derivatives of the state; all 0 if it is None.
-            z: states of the model; all 0 if it is None.
+            t: the time, s; the initial time if it is None.
+            q: coordinates by name; all are 0 if it is None.
+            qdot: velocities, and higher derivatives of the state, by name; all are 0 if it is None.
+            z: states of the model by name; all are 0 if it is None.
             p: parameters, shape (parameters,), or some by name; those of the model if it is None.
 
         Warns:
-            UserWarning: a velocity that is given is not that of the state, as the values violate the constraints.
+            UserWarning: a velocity of the state differs from the given one, as the given values violate the constraints.
 
         Raises:
-            KeyError: a name is none of the coordinates, velocities or states, or none of the parameters.
+            KeyError: there is no coordinate, velocity, state or parameter of that name.
             ValueError: the shape of p does not fit.
             TypeError: a value is no number, or the values are not given by name.
         """
@@ -468,11 +473,11 @@ class Dynamics:
         return x
 
     def motion(self, x: npt.ArrayLike, t: float | None = None, p: Values = None) -> dict[str, float]:
-        """Coordinates, velocities (and higher derivatives of the state) and states of the model of one state x, by name.
+        """Returns the coordinates, velocities (and higher derivatives of the state) and states of the model at one state x, by name.
 
         Args:
             x: a state.
-            t: the time, s; that of the start if it is None.
+            t: the time, s; the initial time if it is None.
             p: the parameters with which x was made, on which independent velocities may depend; those of the model if it is
                 None.
 
@@ -497,7 +502,7 @@ class Dynamics:
         return ByName({n: v for names, values in zip(self._names(), parts, strict=True) for n, v in zip(names, values, strict=True)})
 
     def _names(self) -> tuple[list[str], list[str], list[str]]:
-        """Names of coordinates; of velocities and higher derivatives; of the model's states."""
+        """Returns the names of the coordinates, of the velocities with higher derivatives, and of the model's states."""
         states = list(self.model.states)
         if self.minimal:
             coordinates = [c.name for c in self.model.coordinates]

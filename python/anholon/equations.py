@@ -1,4 +1,4 @@
-"""Equations of motion, proofs and certificates, as Python and notebooks show them."""
+"""Equations of motion, proofs and certificates."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from . import _core, _display
 
 
 class Equations:
-    """The equations of motion in a classical form: ``print`` shows text, a notebook typeset formulas.
+    """The equations of motion in a classical form. ``print`` shows text, a notebook shows typeset formulas.
 
     Example:
         >>> import anholon as an
@@ -28,22 +28,22 @@ class Equations:
 
     @property
     def text(self) -> str:
-        """Plain text, as ``anholon derive`` prints it."""
+        """The equations as plain text, which ``anholon derive`` prints."""
         return self._core.text
 
     @property
     def latex(self) -> str:
-        """The equations in LaTeX, as papers take them."""
+        """The equations in LaTeX, for papers."""
         return self._core.latex
 
     @property
     def mathml(self) -> str:
-        """MathML, as browsers show it."""
+        """The equations in MathML, for browsers."""
         return self._core.mathml
 
     @property
     def json(self) -> Any:
-        """The equations as trees of formulas, as ``anholon derive --format json`` prints them."""
+        """The equations as trees of formulas, which ``anholon derive --format json`` prints."""
         return json.loads(self._core.json)
 
     def __str__(self) -> str:
@@ -63,7 +63,7 @@ _SIGNS = {"proved": "✓", "refuted": "✗", "unknown": "?"}
 
 
 class Proof:
-    """Which forms are proved to agree with Routh's equations, with a certificate.
+    """The verdicts on forms, which tell if they are proved to agree with Routh's equations, with a certificate.
 
     Example:
         >>> import anholon as an
@@ -93,7 +93,7 @@ class Proof:
             file.write(self.certificate)
 
     def __bool__(self) -> bool:
-        """Whether all forms are proved."""
+        """True if all forms are proved."""
         return self._core.all_proved
 
     def __repr__(self) -> str:
@@ -104,7 +104,7 @@ class Proof:
 
 
 def verify(proof: Proof | str) -> _core.Verification:
-    """Checks a certificate (or the one of a proof), sharing nothing with the prover but numbers.
+    """Checks a certificate, or that of a proof. The checker and the prover share only the arithmetic of numbers.
 
     Raises:
         ModelError: the text is no certificate.

@@ -1,9 +1,9 @@
 """Formulas of a model as Python expressions, for :class:`Builder`.
 
-An expression knows the text that a model file has for it; that text is what counts. ``x.dt`` is a derivative by time,
-``a == b`` an equation, ``a > b`` a condition. Numbers are exact: an ``int``, a ``Fraction`` and a ``Decimal`` as they are, a
-``float`` as the decimal that Python prints. A text is a formula of the model language and is accepted wherever an
-expression is.
+An expression holds its text in the model language, and that text goes into the model. ``x.dt`` is a derivative by time,
+``a == b`` an equation, ``a > b`` a condition. Numbers are exact: a ``float`` stands for the decimal that Python prints, an
+``int``, a ``Fraction`` or a ``Decimal`` for its value. A text is a formula of the model language and may stand in place of an
+expression.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ._numbers import Number, text_of, whole
 
 _SUM, _PRODUCT, _POWER, _ATOM = range(1, 5)
 
-# What NumPy calls the operators of Python, and functions of this package.
+# NumPy's names of the operators of Python (_OPERATORS) and of functions of this package (_AS_HERE).
 _OPERATORS = {"add": "add", "subtract": "sub", "multiply": "mul", "divide": "truediv", "true_divide": "truediv", "power": "pow", "float_power": "pow"}
 _OPERATORS |= {"less": "lt", "less_equal": "le", "greater": "gt", "greater_equal": "ge", "equal": "eq", "not_equal": "ne", "matmul": "matmul"}
 _AS_HERE = {f"arc{name}": f"an.a{name}" for name in ("sin", "cos", "tan", "tan2", "sinh", "cosh", "tanh")}
@@ -27,8 +27,8 @@ _AS_HERE |= {"absolute": "abs(…)", "minimum": "an.minimum", "maximum": "an.max
 
 
 def _as_given(base: Any) -> Any:
-    """The left side of a power. Before Python 3.12 a Fraction there is a float when it comes; the fraction itself is in the
-    frame of its method."""
+    """Returns the base of a power as the user wrote it. Before Python 3.12 Fraction.__pow__ passes its base on as a float; the frame of
+    that method holds the Fraction."""
     frame = sys._getframe(2)
     return frame.f_locals["a"] if isinstance(base, float) and frame.f_code is _POWER_OF_FRACTION else base
 
@@ -37,7 +37,7 @@ _POWER_OF_FRACTION = Fraction.__pow__.__code__
 
 
 class Expr:
-    """A number, vector or rotation. Make one from names of a :class:`Builder`, from numbers and the functions of this module.
+    """A formula whose value is a number, a vector or a rotation. It is made of names of a :class:`Builder`, of numbers and of functions.
 
     Example:
         >>> import anholon as an
@@ -52,7 +52,7 @@ class Expr:
     def __init__(self, text: str, strength: int = _ATOM, tree: tuple[Any, ...] = ()) -> None:
         self.text: str = text
         self._strength = strength
-        self._tree = tree  # what it is made of, for SymPy
+        self._tree = tree  # the operation with its operands, for SymPy
 
     # ---- arithmetic ----
 
@@ -107,16 +107,16 @@ class Expr:
         return call("abs", self)
 
     def __matmul__(self, other: Term) -> Expr:
-        """The scalar product of two vectors, as ``dot``."""
+        """Returns the scalar product of two vectors, as ``dot`` does."""
         return call("dot", self, other)
 
     def _inside(self, strength: int) -> str:
         return self.text if self._strength >= strength else f"({self.text})"
 
-    # ---- what Python or NumPy asks of numbers ----
+    # ---- conversions by Python and NumPy ----
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **more: Any) -> Any:
-        """Sums, products and comparisons with numbers of NumPy. Raises TypeError for its functions of numbers."""
+        """Returns sums, products, powers and comparisons with numbers of NumPy. Raises TypeError for other functions of NumPy."""
         name = str(ufunc.__name__)
         if name in _OPERATORS and method == "__call__" and not more and len(inputs) == 2:
             a, b = (x if isinstance(x, Expr) else expr(x) for x in inputs)
@@ -136,11 +136,11 @@ class Expr:
         return self.d(1)
 
     def d(self, order: int = 1) -> Expr:
-        """The derivative by time of this order, 0 … 20.
+        """Returns the derivative by time of this order, 0 … 20.
 
         Raises:
             TypeError: the order is no whole number.
-            ValueError: it is another one.
+            ValueError: the order is below 0 or above 20.
         """
         if whole("the order of a derivative", order, 0) > 20:
             raise ValueError(f"the order of a derivative is 20 or less, not {order}")
@@ -201,22 +201,23 @@ class Expr:
         return self.text
 
     def _sympy_(self) -> Any:
-        """The expression for SymPy: coordinates, states, inputs and functions of time are dynamicsymbols, parameters symbols;
-        what was defined is its formula.
+        """Returns the expression of SymPy. Coordinates, states, inputs and functions of time become dynamicsymbols, parameters
+        symbols, and names of :meth:`Builder.define` their formulas.
 
         Raises:
-            TypeError: it is a vector or a rotation, or a function that SymPy does not have.
+            TypeError: the expression holds a vector, a rotation, a text, or a function that SymPy does not have.
         """
         return _to_sympy(self)
 
 
 class _Formula(Expr):
-    """A number or a vector. As no other class derives from it, Python never turns ``a == b`` round."""
+    """A formula whose value is a number or a vector. No class derives from it: Python would swap the sides of ``a == b`` if the class of b
+    did."""
 
     __slots__ = ()
 
     def __call__(self, *arguments: Any) -> Any:
-        """Raises TypeError: a formula is no function."""
+        """Raises TypeError, as a formula is no function."""
         if self._tree[:1] == ("d",):
             raise TypeError(f"{self.text} is no function: the derivative is written x.dt, without parentheses, or x.d(2)")
         raise TypeError(f"{self.text} is no function; functions and tables of a model are called by an.call({self.text!r}, …)")
@@ -228,14 +229,14 @@ class Rotation(Expr):
     __slots__ = ()
 
     def __call__(self, a: Term, b: Term, c: Term) -> Expr:
-        """The vector with these components along its axes."""
+        """Returns the vector with these components along the axes of the rotation."""
         if self._tree[:1] != ("name",):
             return expr(a) * self.x + expr(b) * self.y + expr(c) * self.z
         components = ", ".join(expr(part).text for part in (a, b, c))
         return _Formula(f"{self._inside(_ATOM)}({components})", _ATOM, ("vector",))
 
     def __mul__(self, other: Term) -> Rotation:
-        """Two turns, one after the other, each about the axes where it then is."""
+        """Returns the product of two rotations: two turns, the second about axes that the first has turned."""
         product = super().__mul__(other)
         return Rotation(product.text, product._strength, product._tree)
 
@@ -246,41 +247,41 @@ class Place(Expr):
     __slots__ = ()
 
     def vel(self, seen_from: Term | None = None) -> Expr:
-        """Its velocity relative to the observer, or as seen from a body or ``"inertial"``."""
+        """Returns the velocity of the point relative to the observer, or to a body or ``"inertial"``."""
         return call("vel", self) if seen_from is None else call("vel", self, seen_from)
 
     def acc(self, seen_from: Term | None = None) -> Expr:
-        """Its acceleration, likewise."""
+        """Returns the acceleration of the point relative to the observer, or to ``"inertial"``."""
         return call("acc", self) if seen_from is None else call("acc", self, seen_from)
 
 
 class Body(Rotation):
-    """A body: with an orientation also the frame of its axes."""
+    """A body. If it has an orientation, it is the frame of its axes, too."""
 
     __slots__ = ()
 
     @property
     def center(self) -> Place:
-        """Its mass centre."""
+        """The mass centre of the body."""
         return Place(f"{self.text}.center", _ATOM, ("vector",))
 
     def vel(self, point: Term) -> Expr:
-        """The velocity of its material point that is at `point` now."""
+        """Returns the velocity of the material point of the body that is at `point` at the moment."""
         return call("vel", self, point)
 
     @property
     def angvel(self) -> Expr:
-        """Its angular velocity relative to the observer."""
+        """The angular velocity of the body relative to the observer."""
         return call("angvel", self)
 
     @property
     def reaction(self) -> Expr:
-        """The force of all constraints on it, for monitors and events."""
+        """The force of all constraints on the body, for monitors and events."""
         return call("reaction", self)
 
 
 class Equation:
-    """``a == b``: an equation of numbers or vectors. It is true if both sides are the same text, as in SymPy."""
+    """An equation ``a == b`` of numbers or vectors. Its truth value is True if both sides are the same text, as in SymPy."""
 
     __slots__ = ("left", "right")
 
@@ -290,7 +291,7 @@ class Equation:
 
     @property
     def text(self) -> str:
-        """``"a = b"``."""
+        """The equation in the model language, ``"a = b"``."""
         return f"{self.left.text} = {self.right.text}"
 
     def __bool__(self) -> bool:
@@ -304,7 +305,7 @@ class Equation:
 
 
 class Condition:
-    """``a > b``, for :func:`piecewise`."""
+    """A condition such as ``a > b``, for :func:`piecewise`."""
 
     __slots__ = ("text",)
 
@@ -327,14 +328,14 @@ class Condition:
 
 
 Term = Union[Expr, Number, Sequence[Any]]
-"""What stands where an expression is wanted: an expression, a number, a text, or three components of a vector."""
+"""The arguments that are accepted as an expression: an expression, a number, a text, or three components of a vector."""
 
 
 def expr(term: object) -> Expr:
-    """An expression of a number, a text (a formula of the model language) or the three components of a vector.
+    """Returns the expression for a number, a text (a formula of the model language) or the three components of a vector.
 
     Raises:
-        TypeError: a list has another number of components.
+        TypeError: a list does not have three components, or `term` is a condition.
 
     Example:
         >>> import anholon as an
@@ -359,13 +360,14 @@ def expr(term: object) -> Expr:
 
 
 def call(function: str, *arguments: object) -> Expr:
-    """A function of the model language: ``call("sin", x)`` is ``sin(x)``. For functions and tables of your model, too."""
+    """Returns the value of a function of the model language: ``call("sin", x)`` is ``sin(x)``. Calls functions and tables of the
+    model, too."""
     given = [expr(argument) for argument in arguments]
     return _Formula(f"{function}({', '.join(a.text for a in given)})", _ATOM, ("call", function, *given))
 
 
 def vector(x: Term, y: Term, z: Term) -> Expr:
-    """The vector x ex + y ey + z ez."""
+    """Returns the vector x ex + y ey + z ez."""
     parts = [component * axis for component, axis in zip((expr(x), expr(y), expr(z)), (ex, ey, ez), strict=True) if component.text != "0"]
     total = None
     for component, part in zip([c for c in (expr(x), expr(y), expr(z)) if c.text != "0"], parts, strict=True):
@@ -375,7 +377,7 @@ def vector(x: Term, y: Term, z: Term) -> Expr:
 
 
 def _named(name: str, kind: str = "symbol", *formula: Expr) -> Expr:
-    """A name; of kind "formula" it stands for the formula."""
+    """Returns an expression that is a name. A name of kind "formula" stands for the formula."""
     return _Formula(name, _ATOM, ("name", name, kind, *formula))
 
 

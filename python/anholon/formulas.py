@@ -1,4 +1,4 @@
-"""The rates as formulas, in the words of other libraries: NumPy, JAX, CasADi, SymPy, mpmath."""
+"""The rates as formulas of other libraries: NumPy, JAX, CasADi, SymPy, mpmath."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ NO_FORMULAS_OF_INPUTS = (
     "the formulas of the inputs hold what the equations are solved for\nhint: give u, for instance f.input(t, x) of the function f that these formulas are of"
 )
 
-# NumPy's names of elementary functions, and those of other libraries where they differ.
+# NumPy's names of elementary functions, with the names in libraries that call them differently.
 _SHORT = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh"}
 
 
-# From the digits of a double, each of these doubles them.
+# The number of Newton steps. The first one starts with the digits of a double, and each step doubles the digits.
 _CORRECTIONS = 6
 
 
 class _Library:
-    """What a library has, under NumPy's names.
+    """The functions of a library under NumPy's names.
 
     Args:
         module: the library.
-        names: its names of functions.
-        choose: choose(condition, a, b), for formulas with cases.
+        names: the library's own names by NumPy's, where they differ.
+        choose: the function choose(condition, a, b), for formulas with cases.
     """
 
     def __init__(self, module: Any, names: dict[str, str], choose: Callable[[Any, Any, Any], Any]) -> None:
@@ -55,12 +55,12 @@ class _Library:
         return self._choose(condition, a, b)
 
     def searchsorted(self, knots: Sequence[float], x: Any, side: str) -> Any:
-        """The steps of a table: for take()."""
+        """Returns the knots of a table with x; take() finds the value."""
         del side
         return knots, x
 
     def take(self, values: Sequence[float], at: Any) -> Any:
-        """The value whose index is the number of knots not above x."""
+        """Returns the value whose index is the number of knots that are not above x."""
         knots, x = at
         out: Any = values[-1]
         for knot, value in zip(reversed(knots), reversed(values[:-1]), strict=True):
@@ -94,7 +94,7 @@ class Formulas:
         exec(compile(source, "<formulas>", "exec"), self._module)
 
     def _with_numbers(self, number: Callable[[str], Any]) -> dict[str, Any]:
-        """The functions of the module with numbers of another kind, made from their decimals."""
+        """Returns the functions of the module with numbers of another kind, which `number` makes of decimals."""
         tree = ast.parse(self.source)
         tree.body = [_ExactNumbers().visit(node) if isinstance(node, ast.FunctionDef) else node for node in tree.body]
         module: dict[str, Any] = {"_number": number}
@@ -103,7 +103,7 @@ class Formulas:
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """Outputs of the model that hold what these formulas do not know: multipliers, in independent velocities."""
+        """The outputs of the model that the formulas lack: in independent velocities, those with multipliers."""
         return tuple(self._module["LEFT_OUT"])
 
     def evaluate(
@@ -117,18 +117,18 @@ class Formulas:
         number: Callable[[str], Any] | None = None,
         lead: Sequence[Any] | None = None,
     ) -> tuple[list[Any], list[Any]]:
-        """Rates and outputs with the functions of any library.
+        """Returns rates and outputs, computed with the functions of any library.
 
         Args:
-            library: has sin, cos, … and where under NumPy's names.
-            solve: solves matrix lead = right, given row by row.
+            library: an object that has sin, cos, … and where under NumPy's names.
+            solve: the function solve(matrix, right) of matrix lead = right; it takes the matrix as rows.
             t: the time, s.
             x: the state, u: the inputs, p: the parameters; anything with an index.
-            number: makes the numbers in the formulas of their decimals; they are floats without it.
-            lead: nearly what nonlinear equations are solved for, in numbers; Newton's method corrects it.
+            number: the function that makes numbers of the decimals in the formulas; they are floats if it is None.
+            lead: approximate values of the unknowns of nonlinear equations; Newton's method corrects them.
 
         Raises:
-            ModelError: the equations are nonlinear in what they are solved for, and there is no `lead`.
+            ModelError: the equations are nonlinear in their unknowns, and there is no `lead`.
         """
         module = self._module if number is None else self._with_numbers(number)
         if module["LEAD"] and not module["LINEAR"]:
@@ -143,10 +143,10 @@ class Formulas:
         return module["rates"](library, t, x, u, p, lead), module["outputs"](library, t, x, u, p, lead)
 
     def _completed(self, library: Any, t: Any, x: Any, u: Any, p: Any, number: Callable[[str], Any] | None = None) -> tuple[Any, Any]:
-        """u and p, by the formulas of the model and as the model has them where they are None.
+        """Returns u and p. If u is None, the formulas of the model give it; if p is None, the parameters of the model do.
 
         Raises:
-            ModelError: the formulas of the inputs are not known before the equations are solved.
+            ModelError: u is None, and the formulas of the inputs hold unknowns of the equations.
         """
         module = self._module if number is None else self._with_numbers(number)
         if p is None:
@@ -158,7 +158,7 @@ class Formulas:
         return u, p
 
     def numpy(self) -> Callable[..., Any]:
-        """A function f(t, x, u, p) of NumPy alone, with the shapes of :class:`Dynamics`; returns (x', y).
+        """Returns a function f(t, x, u, p) -> (x', y) of NumPy only, with the shapes of :class:`Dynamics`.
 
         Without u the inputs follow the formulas of the model.
         """
@@ -183,10 +183,11 @@ class Formulas:
         return f
 
     def jax(self) -> Callable[..., Any]:
-        """A pure function f(t, x, u, p) of JAX, for ``jit``, ``vmap``, ``grad``; returns (x', y).
+        """Returns a pure function f(t, x, u, p) -> (x', y) of JAX, for ``jit``, ``vmap`` and ``grad``.
 
-        Without u the inputs follow the formulas of the model. JAX computes with 32 bits unless ``jax.config.update("jax_enable_x64", True)`` comes first.
-        Reverse derivatives compute the formulas again in place of keeping all that is in them.
+        Without u the inputs follow the formulas of the model. JAX computes with 32 bits unless
+        ``jax.config.update("jax_enable_x64", True)`` is called before. Reverse derivatives compute the formulas again instead of
+        storing their intermediate values.
         """
         import jax
         import jax.numpy as jnp
@@ -208,19 +209,19 @@ class Formulas:
             rates, outputs = self.evaluate(library, solve, t, x, u, p)
             return stack(rates, x), stack(outputs, x)
 
-        # A reverse derivative of a rollout would keep hundreds of numbers of each step as arrays of their own, and XLA compiles
-        # such a loop ten times as long.
+        # Without checkpoint(), a reverse derivative of a rollout stores hundreds of numbers of each step as separate arrays, and XLA
+        # takes ten times as long to compile such a loop.
         g: Callable[..., Any] = jax.checkpoint(f)
         return g
 
     def sympy(self) -> SymPyRates:
-        """The formulas as SymPy expressions."""
+        """Returns the formulas as SymPy expressions."""
         return SymPyRates(self)
 
     def casadi(self, name: str = "f") -> Any:
-        """A ``casadi.Function`` (t, x, u, p) -> (dx, y) of CasADi's own expressions, with all derivatives.
+        """Returns a ``casadi.Function`` (t, x, u, p) -> (dx, y) of CasADi's own expressions, with all derivatives.
 
-        For long formulas :meth:`Dynamics.casadi` is faster.
+        For long formulas the function of :meth:`Dynamics.casadi` is faster.
         """
         import casadi
 
@@ -228,8 +229,8 @@ class Formulas:
         t, x, u, p = (casadi.SX.sym(n, k) for n, k in (("t", 1), ("x", len(d.states)), ("u", len(d.inputs)), ("p", len(d.parameters))))
 
         def solve(matrix: list[list[Any]], right: list[Any]) -> Any:
-            # CasADi's factors have no pivots, and lose digits where the equations are nearly singular: what the solution
-            # misses is solved for with the same factors.
+            # CasADi factors without pivots and loses digits where the equations are nearly singular. The residual, solved for with
+            # the same factors, corrects the solution.
             a, b = casadi.vertcat(*(casadi.horzcat(*row) for row in matrix)), casadi.vertcat(*right)
             q, r = casadi.qr(a)
             solved = casadi.solve(r, q.T @ b)
@@ -240,9 +241,9 @@ class Formulas:
         return casadi.Function(name, [t, x, u, p], [casadi.vertcat(*rates), casadi.vertcat(*outputs)], ["t", "x", "u", "p"], ["dx", "y"])
 
     def mpmath(self, t: Any, x: Sequence[Any], u: Sequence[Any] | None = None, p: Sequence[Any] | None = None) -> Any:
-        """The rates of one state with as many digits as mpmath has set; returns (x', y), two lists.
+        """Returns the rates and outputs (x', y) of one state, two lists, with as many digits as mpmath is set to.
 
-        Without u the inputs follow the formulas of the model, and without p its parameters have all digits, too.
+        Without u the inputs follow the formulas of the model. Without p the parameters of the model are used, with all their digits.
         """
         import mpmath
 
@@ -259,9 +260,9 @@ class Formulas:
 
 
 class SymPyRates:
-    """Rates and outputs as SymPy expressions in symbols of these names, with the exact numbers of the model.
+    """Rates and outputs as SymPy expressions with the exact numbers of the model. Their symbols have the names of the model.
 
-    Where the rates are not explicit (``matrix`` is not None), they hold the symbols ``lead``, and ``matrix * lead = right``.
+    If ``matrix`` is not None, the rates are not explicit: they hold the symbols ``lead``, which solve ``matrix * lead = right``.
     """
 
     def __init__(self, formulas: Formulas) -> None:
@@ -308,7 +309,7 @@ def compile_c(source: str, flags: tuple[str, ...] = ("-O1",)) -> str:
         done = subprocess.run([compiler, *flags, "-fPIC", "-shared", path, "-o", made, "-lm"], capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise ModelError(f"{compiler} fails:\n{done.stderr.strip()}")
-        # The loaded library stays when its file goes, but CasADi opens it by name.
+        # The process keeps a loaded library when its file is deleted, but CasADi opens the file by its name.
         kept = os.path.join(_folder(), f"{abs(hash((source, flags))):x}.so")
         shutil.copyfile(made, kept)
     ctypes.CDLL(kept)

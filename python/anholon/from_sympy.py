@@ -1,12 +1,15 @@
 """Models from ``sympy.physics.mechanics``: KanesMethod, LagrangesMethod, System.
 
-What is read is the mechanical system itself: bodies, velocities, loads and constraints; the equations are then derived anew.
-Generalized speeds are replaced by the rates of the coordinates, auxiliary speeds are zero, and loads become generalized forces. A mass centre whose
-position SymPy does not know (only its velocity was set) gets coordinates of its own, which follow its velocity by constraints,
-unless that velocity is the rate of an expression. A speed without a coordinate (the spin of a wheel) gets one whose rate it is.
-Where a mass or an inertia varies, the equations are those of SymPy, d/dt (m v) = F: the matter that leaves a body is at rest.
-A LagrangesMethod without bodies is read by its Lagrangian: particles stand in for the coordinates, and generalized forces bring
-the terms of Lagrange's equations that these lack; the energies in its reports are then those of the particles.
+The import reads the mechanical system (bodies, velocities, loads and constraints) and derives its equations anew. It replaces
+generalized speeds by the rates of the coordinates, sets auxiliary speeds to zero, and turns loads into generalized forces.
+
+A mass centre of which SymPy knows the velocity only, not the position, gets coordinates of its own, whose rates constraints equate to
+the velocity, unless the velocity is the rate of an expression. A speed without a coordinate (the spin of a wheel) gets a coordinate
+whose rate is the speed. If a mass or an inertia varies, the equations are those of SymPy, d/dt (m v) = F: matter that leaves a body is
+at rest.
+
+A LagrangesMethod without bodies is read by its Lagrangian: each coordinate gets a particle, and generalized forces supply the terms of
+Lagrange's equations that the particles lack. The energies in reports are then those of the particles.
 """
 
 from __future__ import annotations
@@ -47,7 +50,7 @@ from .reading import loads
 
 
 class _Import:
-    """One import: the parts with speeds replaced by rates, and the text that is made of them."""
+    """One import: the parts with speeds replaced by rates, and the text that is made of the parts."""
 
     def __init__(self, method: Any) -> None:
         sm = sympy_module()
@@ -57,11 +60,11 @@ class _Import:
         self.time = mechanics_module().dynamicsymbols._t
         self._without_auxiliary()
         known = [u for u in parts.u if any(e.has(u) for e in parts.kinematic)]
-        self.speeds: dict[Any, Any] = {}  # in coordinates and their rates
+        self.speeds: dict[Any, Any] = {}  # expressions in coordinates and rates
         parts.velocity += self._solve(list(parts.kinematic), known)
-        self.centers: list[tuple[str, Any]] = []  # constraints that tie coordinates of mass centres to their velocities
+        self.centers: list[tuple[str, Any]] = []  # constraints on coordinates that the import adds: their names and expressions that vanish
         self.writer = Writer(parts)
-        self._given: Mapping[Any, Number] = {}  # values of symbols
+        self._given: Mapping[Any, Number] = {}  # the values of symbols
         self._places: dict[Any, list[Any]] = {}
         self._kept: tuple[Any, list[Any]] | None = None
         self.bodies = Bodies(self)
@@ -69,14 +72,14 @@ class _Import:
         self._look_at_acceleration_constraints()
 
     def _without_auxiliary(self) -> None:
-        """Sets auxiliary speeds to zero where they are known now; ``in_rates`` does it in velocities and loads."""
+        """Sets auxiliary speeds to zero in equations and constraints; ``in_rates`` sets them to zero in velocities and loads."""
         zero = self.sm.Integer(0)
         self._zero = {**{u.diff(self.time): zero for u in self.parts.auxiliary}, **dict.fromkeys(self.parts.auxiliary, zero)}
         for name in ("kinematic", "holonomic", "velocity", "acceleration"):
             setattr(self.parts, name, [real(self.sm.sympify(e)).xreplace(self._zero) for e in getattr(self.parts, name)])
 
     def _solve(self, equations: list[Any], speeds: list[Any]) -> list[Any]:
-        """Solves linear equations for speeds, which enter ``self.speeds``; returns the equations that are left."""
+        """Solves linear equations for speeds and adds them to ``self.speeds``; returns the equations that remain."""
         sm, draw = self.sm, random.Random(5)
         if not speeds:
             return [e for e in equations if e != 0]
@@ -101,22 +104,22 @@ class _Import:
         left = [self._without_denominator(self.in_rates(e)) for k, e in enumerate(equations) if k not in rows]
         left = [e for e in left if sm.simplify(e) != 0 and not vanish([e], {})]
         if left:
-            # Where all equations hold, the speeds follow from all of them, without pivots that vanish somewhere.
+            # The least-squares solution of all equations is the same where they hold, and its pivots may vanish nowhere.
             among_all = self._solution(speeds, a.T * a, -(a.T * b))
             if not any(has_poles(e, self.parts.holonomic) for e in among_all.values()):
                 self.speeds = {**{u: e.xreplace(among_all) for u, e in before.items()}, **among_all}
         return left
 
     def _solution(self, speeds: list[Any], a: Any, b: Any) -> dict[Any, Any]:
-        """The solution of a x = b."""
+        """Returns the solution of a x = b by speeds."""
         return dict(zip(speeds, solution(a, b, self.parts.holonomic), strict=True))
 
     def _coordinates_of(self, e: Any) -> set[Any]:
         return set(e.atoms(self.sm.core.function.AppliedUndef))
 
     def _without_denominator(self, e: Any) -> Any:
-        """An equation e = 0 that holds where the denominator vanishes, too: of x' tan(q) - y' the numerator. Tangents are
-        fractions of sines: a tangent that is multiplied with would have a pole where the equation has none."""
+        """Returns the numerator of e, which vanishes where e does and has no pole: x' sin(q) - y' cos(q) for x' tan(q) - y'. Tangents,
+        cotangents, secants and cosecants become fractions of sines and cosines before."""
         sm = self.sm
         for function, above, below in ((sm.tan, sm.sin, sm.cos), (sm.cot, sm.cos, sm.sin), (sm.sec, None, sm.cos), (sm.csc, None, sm.sin)):
             e = e.replace(function, lambda x, above=above, below=below: (above(x) if above else sm.Integer(1)) / below(x))
@@ -124,7 +127,7 @@ class _Import:
         return above if self._coordinates_of(below) else e
 
     def add_coordinate(self, wish: str) -> Any:
-        """A coordinate that SymPy does not have."""
+        """Adds a coordinate that SymPy does not have, and returns it."""
         taken = {str(q.func) for q in self.parts.q} | RESERVED
         while wish in taken:
             wish += "_"
@@ -134,8 +137,9 @@ class _Import:
         return q
 
     def _place_centers(self, unknown: list[Any]) -> None:
-        """Finds where mass centres are. One that has a velocity only gets coordinates with that velocity, from which
-        speeds without a kinematic equation follow. A speed that turns a body, or is left, becomes the rate of an angle."""
+        """Finds the positions of mass centres. A mass centre of which only the velocity is known gets coordinates with that velocity,
+        from which speeds without a kinematic equation follow. A speed that turns a body, and any other speed that remains, becomes
+        the rate of an angle."""
         open_equations: list[Any] = []
         names: list[str] = []
         for body in self.parts.bodies:
@@ -163,10 +167,10 @@ class _Import:
         left = self._solve(open_equations, joined) if joined else open_equations
         self.centers = [(f"center{k + 1}" if joined else f"center_{names[k]}", e) for k, e in enumerate(left)]
         for body in self.parts.bodies:
-            self.bodies.turned(body)  # this may add coordinates
+            self.bodies.turned(body)  # turned() may add coordinates
 
     def _look_at_acceleration(self, point: Any) -> None:
-        """Warns if SymPy was told an acceleration that is not the rate of the velocity."""
+        """Warns if an acceleration was set that is not the rate of the velocity of the point."""
         told = point._acc_dict.get(self.parts.frame)
         if told is None:
             return
@@ -179,7 +183,7 @@ class _Import:
             )
 
     def _look_at_acceleration_constraints(self) -> None:
-        """Warns if constraints of accelerations do not follow from the rates of those of velocities."""
+        """Warns if acceleration constraints do not follow from the rates of the other constraints."""
         import mpmath
 
         sm, draw, at = self.sm, random.Random(8), self._on_constraints() if self.parts.acceleration else {}
@@ -201,13 +205,13 @@ class _Import:
             )
 
     def in_rates(self, e: Any) -> Any:
-        """An expression without generalized speeds, and without their rates."""
+        """Returns an expression with generalized speeds and their rates replaced by those of coordinates."""
         e = real(self.sm.sympify(e)).xreplace(self._zero)
         second = {u.diff(self.time): x.diff(self.time) for u, x in self.speeds.items()} if e.has(self.sm.Derivative) else {}
         return real(e.xreplace({k: v for k, v in second.items() if e.has(k)}).xreplace(self.speeds))
 
     def components(self, vector: Any) -> list[Any]:
-        """Components along the inertial axes."""
+        """Returns the components of a vector along the inertial axes."""
         try:
             return [self.in_rates(x) for x in vector.to_matrix(self.parts.frame)]
         except ValueError as e:
@@ -217,12 +221,12 @@ class _Import:
             ) from None
 
     def _vanishes(self, expressions: Iterable[Any]) -> bool:
-        """Whether expressions vanish with 30 digits where the constraints hold."""
+        """True if expressions vanish at a random state that satisfies the constraints."""
         return vanish(expressions, self._on_constraints())
 
     def _on_constraints(self) -> dict[Any, Any]:
-        """Random values of all coordinates and rates, with 40 digits, that satisfy the constraints, and the values of the
-        other symbols in these; empty without constraints, and if no such values are found."""
+        """Returns random values of all coordinates and rates, with 40 digits, that satisfy the constraints, and the values of the other
+        symbols in the constraints; an empty dictionary if there are no constraints or no such values are found."""
         import mpmath
 
         if not hasattr(self, "_drawn"):
@@ -234,7 +238,7 @@ class _Import:
         return self._drawn
 
     def position(self, point: Any) -> list[Any] | None:
-        """The position of a point in the inertial frame if its rate is the point's velocity, else None."""
+        """Returns the position of a point in the inertial frame if the rate of the position is the velocity of the point, else None."""
         velocity = self.components(point.vel(self.parts.frame))
         seen, queue = {point}, [point]
         while queue:
@@ -250,12 +254,12 @@ class _Import:
         return None
 
     def center(self, point: Any) -> list[str]:
-        """The formulas of a mass centre."""
+        """Returns the formulas of the position of a mass centre."""
         return [self.writer.formula(x) for x in self._places[point]]
 
     def _add_varying(self, sums: dict[Any, Any]) -> None:
-        """Adds the generalized forces of varying inertia: the torque -I' w, since SymPy's torque is d/dt (I w), and under
-        Lagrange's equations the slopes of the kinetic energy by masses and inertias that depend on coordinates."""
+        """Adds the generalized forces of varying inertia: the torque -I' w, since SymPy's torque is d/dt (I w), and for Lagrange's
+        equations the derivatives of the kinetic energy by coordinates on which masses and inertias depend."""
         sm = self.sm
         for body in self.parts.bodies:
             mass, velocity = sm.sympify(body.mass), sm.Matrix(self.components(center_of(body).vel(self.parts.frame)))
@@ -275,7 +279,7 @@ class _Import:
                     sums[q] = sums.get(q, 0) + more
 
     def _inertia_of(self, q: Any) -> Any:
-        """What stands in for the inertia of a coordinate if only a Lagrangian is known: its constant part if that is
+        """Returns the mass of the particle of a coordinate if only a Lagrangian is known: the constant part of d²L/dq'² if that is
         positive, else 1."""
         sm = self.sm
         own = sm.expand(sm.diff(self.parts.lagrangian, q.diff(self.time), 2))
@@ -283,8 +287,8 @@ class _Import:
         return constant if certainly_positive(constant, self._given) else sm.Integer(1)
 
     def stand_ins(self) -> list[str]:
-        """A particle on a line for each coordinate. Its inertia is one term of the kinetic energy, and
-        ``generalized_forces`` adds the others, so that the equations are Lagrange's."""
+        """Returns a particle on a line for each coordinate. Its kinetic energy is one term of the Lagrangian, and
+        ``generalized_forces`` adds the other terms, so that the equations are Lagrange's."""
         bodies = []
         for q in self.writer.q:
             name, mass = self.writer.new(f"{self.writer.names[q]}_inertia"), self.writer.formula(self._inertia_of(q))
@@ -292,7 +296,7 @@ class _Import:
         return bodies
 
     def _lagrange_terms(self) -> dict[Any, Any]:
-        """The terms of Lagrange's equations beyond the inertia of the particles that stand in."""
+        """Returns the terms of Lagrange's equations that the particles of ``stand_ins`` lack, by coordinate."""
         sm, energy = self.sm, self.parts.lagrangian
         terms = {}
         for q in self.writer.q:
@@ -302,7 +306,7 @@ class _Import:
         return terms
 
     def generalized_forces(self) -> dict[Any, Any]:
-        """The sum of all loads, by coordinate."""
+        """Returns the sum of the generalized forces of all loads, by coordinate."""
         Point, ReferenceFrame = mechanics_module().Point, mechanics_module().ReferenceFrame
 
         sm, frame = self.sm, self.parts.frame
@@ -321,7 +325,8 @@ class _Import:
         return {q: s for q, s in sums.items() if s != 0}
 
     def _without_what_cancels(self, force: Any) -> Any:
-        """A generalized force without the forces of auxiliary speeds, which do no work: their values are unknown."""
+        """Returns a generalized force without the symbols of loads that cancel in it. Such are the forces at auxiliary speeds, which do no
+        work and have no values."""
         sm, loads = self.sm, [x for load in self.parts.loads for x in load if self.parts.auxiliary and hasattr(x, "to_matrix")]
         told = {x for vector in loads for matrix, _ in vector.args for e in matrix for x in e.free_symbols | e.atoms(sm.core.function.AppliedUndef)}
         for x in sorted((force.free_symbols | force.atoms(sm.core.function.AppliedUndef)) & told - {self.time, *self.parts.q}, key=str):
@@ -331,8 +336,8 @@ class _Import:
         return force
 
     def velocity_constraints(self) -> list[Any]:
-        """Those that do not follow from the holonomic ones or from others, by the rank at random points."""
-        now = (list(self.writer.q), dict(self.speeds))  # the constraints are the same while these are
+        """Returns the velocity constraints that do not follow from the holonomic ones or from others, by the rank at a random point."""
+        now = (list(self.writer.q), dict(self.speeds))  # the result is the same as long as these are
         if self._kept is not None and self._kept[0] == now:
             return self._kept[1]
         sm, draw = self.sm, random.Random(2)
@@ -354,13 +359,13 @@ class _Import:
                 continue
             rank += 1
             if sm.count_ops(e) < 400 and any(x.exp.is_negative and x.base.has(*self.writer.q) for x in e.atoms(sm.Pow)):
-                e = sm.simplify(e)  # SymPy solves for speeds with pivots that vanish at the origin
+                e = sm.simplify(e)  # simplifying removes pivots of SymPy that vanish at the origin
             kept.append(e)
         self._kept = now, kept
         return kept
 
     def text(self, title: str, values: Mapping[Any, Number], initial: Mapping[Any, Number]) -> str:
-        """The model file."""
+        """Returns the text of the model file."""
         w, self._given = self.writer, values
         bodies = [self.bodies.entry(b, values) for b in self.parts.bodies] if self.parts.lagrangian is None else self.stand_ins()
         constraints = [(f"holonomic{k + 1}", w.formula(e)) for k, e in enumerate(self.parts.holonomic)]
@@ -396,8 +401,8 @@ class _Import:
         return "\n".join(lines) + "\n"
 
     def _must_be_known(self, values: Mapping[Any, Number]) -> None:
-        """Raises ModelError for coordinates and speeds among the keys of the values, and for texts that name no symbol and no function
-        of the system. Further symbols may be those of other systems."""
+        """Raises ModelError if a key of the values is a coordinate or a speed, or a text that names no symbol and no function of the
+        system. Other symbols are allowed, as they may belong to other systems."""
         if not values:
             return
         w, states = self.writer, {name_of(x) for x in [*self.parts.q, *self.parts.u]}
@@ -409,7 +414,7 @@ class _Import:
                 raise ModelError(f"'{name}' in values is no symbol and no function of the system{nearest(name, known)}\nhint: {', '.join(sorted(known))}")
 
     def _must_have_values(self, missing: list[Any]) -> None:
-        """Raises ModelError for symbols without a value. Symbols of one name have values by symbol alone."""
+        """Raises ModelError for symbols without a value. Several symbols of one name need values by the symbols themselves."""
         if not missing:
             return
         names = [symbol.name for symbol in self.writer.parameters]
@@ -424,14 +429,14 @@ class _Import:
         raise ModelError(f"values are missing for {', '.join(listed)}\nhint: from_sympy(…, values={{{listed[0]}: 1}})")
 
     def _values(self, values: Mapping[Any, Number]) -> Callable[[Any], str | None]:
-        """The formula that is given for a symbol or function: by itself, else by its name if no other one has this name."""
+        """Returns a function that finds the formula given for a symbol or function: by the symbol, else by a name that is unique."""
         written = {key: self._value(value, key) for key, value in values.items()}
         names = [name_of(x) for x in [*self.writer.parameters, *self.writer.functions]]
         by_name = {name_of(key): value for key, value in written.items() if names.count(name_of(key)) < 2}
         return lambda of: written.get(of, by_name.get(name_of(of)))
 
     def _start(self, initial: Mapping[Any, Number]) -> tuple[dict[str, str], list[str]]:
-        """Initial values by the names of coordinates and rates, and conditions for generalized speeds."""
+        """Returns initial values by the names of coordinates and rates, and conditions for generalized speeds."""
         w = self.writer
         coordinates, speeds = {name_of(q): q for q in w.q}, {name_of(u): u for u in self.speeds}
         given: dict[str, str] = {}
@@ -462,7 +467,7 @@ class _Import:
         return given, conditions
 
     def _value(self, value: Any, key: Any) -> str:
-        """A number, or a formula of SymPy, as text."""
+        """Returns a number or a formula of SymPy as text."""
         try:
             return self.writer.formula(value) if isinstance(value, self.sm.Basic) else text_of(value)
         except (TypeError, ValueError) as mistake:
@@ -470,26 +475,26 @@ class _Import:
 
 
 def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, Number] | None = None, initial: Mapping[Any, Number] | None = None) -> Model:
-    """The model of a KanesMethod, a LagrangesMethod, a System or a JointsMethod of ``sympy.physics.mechanics``.
+    """Returns the model of a KanesMethod, a LagrangesMethod, a System or a JointsMethod of ``sympy.physics.mechanics``.
 
     Args:
         method: the object of SymPy.
-        title: of the model.
-        values: of all symbols, and of given functions of time, by symbol or name. A symbol without a value is an error; a function without one
-            stands in equations, and nothing is simulated.
-        initial: values of coordinates, their rates and generalized speeds, each by its symbol or name (``"q1'"``). Values, like those
-            of symbols, are numbers, or formulas as texts or of SymPy.
+        title: the title of the model.
+        values: values of symbols and of given functions of time, by symbol or name: numbers, texts or formulas of SymPy. All symbols need
+            values. A function without a value stays in the equations, and the model cannot be simulated.
+        initial: values of coordinates, their rates and generalized speeds, by symbol or name (``"q1'"``), in the same forms.
 
     Returns:
-        A model; ``model.text`` is its file. Coordinates and parameters keep their names where these are names.
+        A model; ``model.text`` is its file. Coordinates and parameters keep their names if the model language allows them.
 
     Raises:
-        ModelError: something has no counterpart in a model; a text in `values`, or what is in `initial`, is none of the system.
-        TypeError: the object is none of these; `values` or `initial` is no mapping.
+        ModelError: a part of the system has no counterpart in a model; the system has no symbol or function of a name in `values`, or no
+            coordinate, rate or speed of a key of `initial`.
+        TypeError: `method` is another object; `values` or `initial` is no mapping.
 
     Warns:
-        UserWarning: an acceleration was set that is not the rate of the velocity of its point, or constraints of accelerations that are not
-            the rates of those of velocities; no body has the moments of inertia of one that turns in space.
+        UserWarning: an acceleration was set that is not the rate of the velocity of its point; acceleration constraints are not the
+            rates of the velocity constraints; a body that turns in space has moments of inertia that no body can have.
 
     Example:
         >>> import anholon as an, sympy as sm

@@ -1,4 +1,4 @@
-"""Functions of formulas, as the model language has them: of numbers, vectors and rotations, and the kinematics of points and bodies."""
+"""The functions of the model language: of numbers, vectors and rotations, and the kinematics of points and bodies."""
 
 from __future__ import annotations
 
@@ -83,22 +83,22 @@ def sqrt(a: Term) -> Expr:
 
 
 def sign(a: Term) -> Expr:
-    """1, -1, and 0 at 0."""
+    """The sign of a number: 1, -1, or 0 at 0."""
     return call("sign", a)
 
 
 def atan2(y: Term, x: Term) -> Expr:
-    """The angle of the direction (x, y)."""
+    """The angle of the direction (x, y), in radians."""
     return call("atan2", y, x)
 
 
 def minimum(a: Term, b: Term) -> Expr:
-    """The smaller one."""
+    """The smaller one of two numbers."""
     return call("min", a, b)
 
 
 def maximum(a: Term, b: Term) -> Expr:
-    """The larger one."""
+    """The larger one of two numbers."""
     return call("max", a, b)
 
 
@@ -106,7 +106,7 @@ def piecewise(*cases: Any) -> Expr:
     """``piecewise((condition, value), …, otherwise)``: the value of the first condition that holds.
 
     Raises:
-        TypeError: the last one is a case, so nothing says what holds otherwise.
+        TypeError: the last argument is a case, so the value otherwise is missing.
     """
     if not cases or isinstance(cases[-1], tuple):
         raise TypeError("piecewise((condition, value), …, otherwise) ends with the value where no condition holds")
@@ -117,17 +117,17 @@ def piecewise(*cases: Any) -> Expr:
 
 
 def choose(k: Term, *values: Term) -> Expr:
-    """The k-th value, k rounded."""
+    """The k-th value, with k rounded."""
     return call("choose", k, *values)
 
 
 def dot(a: Term, b: Term) -> Expr:
-    """The scalar product; also ``a @ b``."""
+    """The scalar product of two vectors, which ``a @ b`` is, too."""
     return call("dot", a, b)
 
 
 def cross(a: Term, b: Term) -> Expr:
-    """The vector product."""
+    """The vector product of two vectors."""
     return call("cross", a, b)
 
 
@@ -152,22 +152,22 @@ def _rotation(function: str, *arguments: object) -> Rotation:
 
 
 def rotx(angle: Term) -> Rotation:
-    """The rotation about x."""
+    """The rotation by an angle in radians about x."""
     return _rotation("rotx", angle)
 
 
 def roty(angle: Term) -> Rotation:
-    """The rotation about y."""
+    """The rotation by an angle in radians about y."""
     return _rotation("roty", angle)
 
 
 def rotz(angle: Term) -> Rotation:
-    """The rotation about z."""
+    """The rotation by an angle in radians about z."""
     return _rotation("rotz", angle)
 
 
 def rot(axis: Term, angle: Term) -> Rotation:
-    """The rotation about a vector of any length but 0."""
+    """The rotation by an angle in radians about a vector of any length but 0."""
     return _rotation("rot", axis, angle)
 
 
@@ -177,7 +177,7 @@ def quat(e0: Term, e1: Term, e2: Term, e3: Term) -> Rotation:
 
 
 def euler(axes: str, a: Term, b: Term, c: Term) -> Rotation:
-    """Turns about three axes, ``"zxz"``, each about the axis where it then is."""
+    """The rotation by Euler angles in radians: three turns, for example ``"zxz"``, each about an axis that the turns before have moved."""
     return _rotation("euler", expr(axes), a, b, c)
 
 

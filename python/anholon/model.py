@@ -30,7 +30,7 @@ from .sweep_folder import SweepFolder
 if TYPE_CHECKING:
     from distributed import Client
 
-# What the command line has and a keyword of simulate() has not, or what has another name here.
+# Options of anholon simulate that are no keywords of simulate(), with hints how Python does the same.
 _ELSEWHERE = {
     "t": 'initial={"t": 1} is the time at which the motion starts',
     "save": "run.save(\"run.h5\") writes the rows; pickle.dumps(run) keeps the run with all that it can do",
@@ -39,10 +39,9 @@ _ELSEWHERE = {
 
 
 class Model(Analysed):
-    """A mechanical system, as a model file has it. It never changes: :meth:`with_` makes another one.
+    """A mechanical system as a model file describes it. A model never changes; :meth:`with_` makes another one.
 
-    Get one from :func:`load`, :func:`loads` or :func:`zoo`. Computations release the interpreter's lock; threads may share
-    a model.
+    :func:`load` and :func:`loads` return models. Computations release the interpreter's lock, and threads may share a model.
 
     Example:
         >>> import anholon as an
@@ -52,15 +51,15 @@ class Model(Analysed):
     """
 
     def __reduce__(self) -> tuple[Callable[..., Model], tuple[Source, dict[str, str], list[str]]]:
-        """Another process reads the model again."""
+        """Pickles the source of the model: another process reads the model again."""
         return made, (self._again, self._given, self._cases)
 
     def with_(self, *, case: str | Sequence[str] = (), **parameters: Number) -> Model:
-        """The same model with other values of parameters, or with scenarios of the file laid over it.
+        """Returns the same model with other values of parameters, or with scenarios of the file laid over it.
 
         Args:
-            case: names of [case.NAME], applied one after the other, after those that this model has already.
-            parameters: new values; names that are no Python identifiers come as ``**{"k'": 2}``.
+            case: names of [case.NAME], applied one after the other, after the scenarios that this model has already.
+            parameters: new values; a name that is no Python identifier is written ``**{"k'": 2}``.
 
         Raises:
             ModelError: a parameter or a case is not known.
@@ -75,14 +74,14 @@ class Model(Analysed):
         return Model(self._again(given, cases), self._again, given, cases)
 
     def in_mode(self, word: str, *more: str) -> Model:
-        """The model of one mode, in which contacts exert ideal forces and nothing changes.
+        """Returns the model of one mode, in which contacts exert ideal forces and keep their state.
 
-        :meth:`equations`, :meth:`prove`, :meth:`compare` and :meth:`linearize` of models with contacts need it.
+        :meth:`equations`, :meth:`prove`, :meth:`compare` and :meth:`linearize` need it if the model has contacts.
 
         Args:
-            word: ``"floor=sticks"`` (``open``, ``slips`` or ``sticks``) of a contact, or ``"caught=1"``, the number of a mode,
-                where constraints have ``active``.
-            more: of other contacts, which are open without a word, and of other modes, which are those of the start.
+            word: ``"floor=sticks"`` (``open``, ``slips`` or ``sticks``) for a contact, or ``"caught=1"``, the number of a mode, if
+                constraints have ``active``.
+            more: words for other contacts and modes. Without a word a contact is open, and a mode has its initial number.
 
         Raises:
             ModelError: a word names no contact or no mode, or a contact slips against friction, which is no ideal force.
@@ -96,7 +95,7 @@ class Model(Analysed):
         return Model(again(self._given, self._cases), again, self._given, self._cases)
 
     def check(self, *, form: str = "routh", initial: Mapping[str, Number] | None = None) -> Check:
-        """What kind of system this is: degrees of freedom, kinds of constraints, the consistent initial state.
+        """Finds the kind of the system: degrees of freedom, kinds of constraints, the consistent initial state.
 
         Raises:
             MotionError: no state satisfies the constraints with the values given, or the configuration is singular.
@@ -112,7 +111,7 @@ class Model(Analysed):
     # ---- its motion ----
 
     def initial(self, *, form: str = "routh", eliminate: str | Iterable[str] = (), **values: Number) -> list[_core.InitialValue]:
-        """The consistent initial state, each value with where it comes from.
+        """Returns the consistent initial state; each value has its origin.
 
         Raises:
             MotionError: no state satisfies the constraints with the values given.
@@ -139,34 +138,36 @@ class Model(Analysed):
         progress: Progress = None,
         **others: Number | bool,
     ) -> Run:
-        """One motion. What happens to it never raises: ``run.outcome`` tells why it stopped and what to do.
+        """Simulates one motion. A motion that stops early raises nothing: ``run.outcome`` tells why it stopped, and what to do.
 
         The numbers are those of ``anholon simulate`` with the same options, bit by bit.
 
         Args:
             to: the end, s; that of the file if it is None.
-            every: a row at each multiple of it after the start, s; a row at each step if it is None.
-            at: rows at these times and at no other, s. They come in the order of time, and once where a time is given twice.
+            every: the interval of rows, s, counted from the start; there is a row at each step if it is None.
+            at: times, s. The run has rows at these times only, in the order of time; a time that is given twice has one row.
             initial: values instead of those of the file: ``{"theta": 1.3, "phi'": 6}``, in SI units; ``{"t": 1}`` is the time at
-                which the motion starts. The initial value of a state of the model is a parameter's, which :meth:`with_` sets.
-            tolerance: of each step, relative; 1e-12 if neither the file nor you say otherwise.
-            form: of the equations, or ``auto``: the one whose motion takes the fewest operations.
-            eliminate: coordinates that forms without multipliers eliminate; chosen if there are none.
+                which the motion starts. The initial value of a state of the model is the value of a parameter, which :meth:`with_`
+                sets.
+            tolerance: the relative tolerance of each step; that of the file if it is None, and 1e-12 if the file has none.
+            form: the form of the equations; ``auto`` is the form whose motion takes the fewest operations.
+            eliminate: coordinates that forms without multipliers eliminate; the program chooses them if there are none.
             method: ``auto``, ``taylor``, ``rk`` or ``bdf``.
-            digits: more than 16: multiple precision; see :meth:`Run.exact`.
-            order: of the Taylor polynomials.
-            error_estimate: digits to trust, by a second, sharper run; True: always, False: never, None: of short runs.
-            most_steps: the motion ends after so many.
-            dense: keeps the polynomials of all steps, so that ``run(t)`` has them; without, it makes the motion once more.
-            stop: asked every 20 ms; a value that is true ends the motion, which keeps its rows.
-            progress: True shows a bar, False none; a function is told the time and the number of steps every 20 ms. By default
-                a bar appears after two seconds in a notebook and at a prompt.
-            others: any option of ``anholon simulate`` that changes the motion, with _ for -: ``rigorous=64``.
+            digits: the number of digits; more than 16 need multiple precision, see :meth:`Run.exact`.
+            order: the order of the Taylor polynomials.
+            error_estimate: estimates the digits to trust by a second run of higher accuracy: True always, False never, None for
+                short runs.
+            most_steps: the number of steps after which the motion ends.
+            dense: True keeps the polynomials of all steps for ``run(t)``, which else simulates the motion once more.
+            stop: a function that is called every 20 ms; a value that is true ends the motion, which keeps its rows.
+            progress: True shows a bar, False none; a function is called with the time and the number of steps every 20 ms. By
+                default a bar appears after two seconds in a notebook and at a prompt.
+            others: any other option of ``anholon simulate`` that changes the motion, with _ for -: ``rigorous=64``.
 
         Raises:
             ModelError: an argument makes no sense.
             TypeError: ``dense`` is not True or False.
-            Interrupted: Ctrl-C; ``.result`` is the run as far as it came.
+            Interrupted: the user pressed Ctrl-C; ``.result`` is the run with its rows until then.
 
         Example:
             >>> import anholon as an
@@ -276,54 +277,56 @@ class Model(Analysed):
         refine: int = 0,
         refine_by: tuple[str, float] | None = None,
     ) -> Sweep | SweepFolder:
-        """Many motions, on all cores: all combinations of the values, the last name varying fastest.
+        """Simulates many motions on all cores: all combinations of the values; the last name varies fastest.
 
         Args:
             vary: by the name of a parameter, a coordinate or a velocity: a list or an array of values, a grid
-                (:func:`grid`), or a law (:func:`normal`, :func:`uniform`) by which each case draws its own. A text is read as
-                that of ``--vary`` is: ``"5,6,7"``, ``"1:7:100"``, ``"normal(1,0.1)"``. ``{"case": ["moon", "long"]}`` runs
-                through scenarios [case.NAME] of the file, laid over this model; they vary slowest.
+                (:func:`grid`), or a law (:func:`normal`, :func:`uniform`) by which each case draws a value. A text has the form
+                of ``--vary``: ``"5,6,7"``, ``"1:7:100"``, ``"normal(1,0.1)"``. ``{"case": ["moon", "long"]}`` runs through
+                scenarios [case.NAME] of the file, laid over this model; scenarios vary slowest.
             to: the end, s; that of the file if it is None, or the last of ``at``.
-            at: times, s, at which the state of each case is kept, too: ``sweep.rows("theta")`` has shape (cases, times). They
-                come in the order of time, each once, as ``sweep.times`` has them.
-            columns: names or patterns such as ``"theta*"``; all columns without it. What varies and the reductions are kept
-                in any case.
+            at: times, s, at which the state of each case is kept, too: ``sweep.rows("theta")`` has shape (cases, times). The
+                times are sorted, and each is kept once, in ``sweep.times``.
+            columns: names or patterns such as ``"theta*"``; all columns if there are none. The names that vary and the
+                reductions are always kept.
             reduce: columns over the whole motion of a case: ``"max(theta')"``, ``"min(height)"``, ``"mean(...)"``,
-                ``"last(...)"`` of an output or of any formula of the model. They are those of the Taylor polynomials,
-                not of some times, and the last value is that at the end. ``"count(EVENT)"`` tells how often an event of the model or of a contact fired, as in
-                ``"count(floor.hits)"``, and ``"first(EVENT)"`` its first time, NaN if it did not fire.
-            cases: how many, where values are drawn; the cases go round the combinations of the lists. Or a table of cases: the
-                path of a CSV or Parquet file, arrays by name, or a table of pandas, polars or pyarrow. Its columns have the
-                names of what varies, and each row is a case for each combination of ``vary``. ``(table, 1000)`` is a table
-                where values are drawn, too: the 1000 cases go round it.
-            together: the lists have the same length and go together, one case for each place: ``vary`` is a table, as a
-                DataFrame is one.
-            draw: ``"random"``, or ``"sobol"`` for the points of a Sobol sequence, which lie more evenly.
-            seed: of the draws, which depend on it and on the number of the case alone.
-            tolerance: of each step, relative.
+                ``"last(...)"`` (the value at the end) of an output or of any formula of the model. They are computed from
+                the Taylor polynomials, not from values at some times. ``"count(EVENT)"`` is the number of times that an event
+                of the model or of a contact fired, as in ``"count(floor.hits)"``, and ``"first(EVENT)"`` the time when it
+                first fired, NaN if it did not.
+            cases: the number of cases, if values are drawn; the cases go round the combinations of the lists. Or a table of
+                cases: the path of a CSV or Parquet file, arrays by name, or a table of pandas, polars or pyarrow. Its columns
+                have the names that vary, and each row is a case for each combination of ``vary``. ``(table, 1000)`` is a
+                table together with values that are drawn: the 1000 cases go round its rows.
+            together: True takes the lists, which have the same length, place by place, one case for each: ``vary`` is then a
+                table, for example a DataFrame.
+            draw: ``"random"``, or ``"sobol"`` for the points of a Sobol sequence, which are distributed more evenly.
+            seed: the seed of the draws, which depend on the seed and on the number of the case only.
+            tolerance: the relative tolerance of each step.
             initial: values common to all cases.
-            form: of the equations.
-            threads: 0: as many as the machine has. The numbers are the same for any.
-            stop: asked every 20 ms; a value that is true ends the sweep.
-            progress: as in :meth:`simulate`; a function is told the number of cases done, twice.
+            form: the form of the equations.
+            threads: the number of threads; 0 takes as many as the machine has. The results do not depend on it.
+            stop: a function that is called every 20 ms; a value that is true ends the sweep.
+            progress: as in :meth:`simulate`; both arguments of a function are the number of cases done.
 
-            out: a folder that takes the cases, part by part; what is there already is not computed again. The value is a
-                :class:`SweepFolder`. Ctrl-C keeps all parts that are complete, and the same call goes on.
+            out: a folder to which the cases are written, part by part; parts that the folder has already are not computed
+                again. The result is then a :class:`SweepFolder`. After Ctrl-C the folder has all complete parts, and the same
+                call computes the rest.
             on: with ``out``, a client of Dask distributed, or the address of its scheduler: its workers compute the parts.
-                They need anholon and the folder, nothing else; a part whose worker died is computed by another one.
-            chunk: cases of a part of a new folder; None: as many as take some seconds.
+                The workers need only anholon and the folder; if a worker dies, another one computes its part.
+            chunk: the number of cases in a part of a new folder; None takes as many as need some seconds.
             share: (i, n): the i-th of n shares, for n processes on one folder.
-            refine: with ``out``, so many further generations of cases, which halve the grid where neighbours ended in
-                different ways.
-            refine_by: (column, bound): halves it, too, where the numbers of neighbours differ by more than the bound.
+            refine: with ``out``, the number of further generations of cases, which halve the grid between neighbours that
+                ended in different ways.
+            refine_by: (column, bound): halves the grid also between neighbours whose numbers differ by more than the bound.
 
         Raises:
             ModelError: an argument makes no sense; the folder holds another sweep or other files.
             OSError: a part could not be written.
-            TypeError: ``columns`` or ``reduce`` is a single name, no list; an argument that is a whole number is none.
-            ValueError: a value is not finite, a whole number is too small.
+            TypeError: ``columns`` or ``reduce`` is a single name, no list; an argument has to be a whole number and is not.
+            ValueError: a value is not finite; a whole number is too small.
             MotionError: the initial values of the model are inconsistent.
-            Interrupted: Ctrl-C; ``.result`` is the sweep as far as it came.
+            Interrupted: the user pressed Ctrl-C; ``.result`` is the sweep with the cases computed until then.
         """
         vary, table = {} if vary is None else vary, ("", "")
         if not hasattr(vary, "items"):
@@ -367,7 +370,7 @@ class Model(Analysed):
         return sweep
 
     def _system_of_sweep(self, form: str, initial: dict[str, str]) -> _core.System | None:
-        """None if the values of the file have no start: those of the cases may have one."""
+        """Returns the prepared system; None if the values of the file have no consistent initial state. Those of the cases may have one."""
         try:
             return self._system(form, initial, ())
         except MotionError:
@@ -381,18 +384,18 @@ class Model(Analysed):
         outputs: str | Sequence[str] | Mapping[str, str | Expr] | None = None,
         initial: Mapping[str, Number] | None = None,
     ) -> Dynamics:
-        """The equations as a compiled function f(t, x, u, p) -> x', for integrators and optimizers of others.
+        """Compiles the equations to a function f(t, x, u, p) -> x', for integrators and optimizers of other libraries.
 
-        f is the right side between events: it holds none of them, neither what they set nor that they end a motion. An
-        integrator that is to heed them looks for their times itself; the number of a mode is an entry of p, by its name.
+        f is the right side between events: it has neither the values that events set nor the end of a motion by an event. The user
+        of f finds the times of events; a mode is an entry of p, by its name.
 
         Args:
-            minimal: in independent velocities, which satisfy the constraints whatever they are, if the equations have
-                them; else in the state of the motion: all coordinates and velocities, and higher derivatives where
-                constraints of order 2 and more ask for them.
-            inputs: which inputs of the model are arguments u: all that can be set, those named, or none. The formulas
-                of the others stand in f.
-            outputs: instead of all monitors and outputs of the model: some of them, formulas in its names, or
+            minimal: True takes independent velocities, any values of which satisfy the constraints, if the equations have them.
+                Else x is the state of the motion: all coordinates and velocities, and higher derivatives if constraints of
+                order 2 or more need them.
+            inputs: the inputs of the model that are arguments u: True for all that can be set, names, or False for none. f
+                computes the other inputs by their formulas.
+            outputs: instead of all monitors and outputs of the model: some of them, formulas in names of the model, or
                 ``{name: formula}``. ``lambda.NAME`` is a multiplier, ``reaction(BODY)`` the force of the constraints;
                 both need ``minimal=False``. A vector gives ``name.x``, ``name.y``, ``name.z``.
             initial: values instead of those of the file, for ``f.start``.
@@ -420,11 +423,11 @@ class Model(Analysed):
         return Dynamics(self, core, {"minimal": minimal, "inputs": True if inputs is True else names, "outputs": None if chosen is None else dict(chosen), "initial": given})
 
     def c_code(self, *, initial: Mapping[str, Number] | None = None, form: str = "routh") -> str:
-        """The motion's right side as a C program that stands by itself."""
+        """Returns the right side of the motion as a C program that needs no other file."""
         return _core.program_text(self._system(form, texts_of(initial), ()), "c")
 
     def python_code(self, *, initial: Mapping[str, Number] | None = None, form: str = "routh") -> str:
-        """The same as a module of NumPy."""
+        """Returns the right side of the motion as a Python module, which needs NumPy."""
         return _core.program_text(self._system(form, texts_of(initial), ()), "python")
 
 

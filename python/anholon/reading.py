@@ -1,4 +1,4 @@
-"""Models from files and texts, and those that come with the library."""
+"""Models from files and texts, and the models that come with the library."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ def load(path: str | os.PathLike[str] | _core.ShippedModel, *, case: str | Seque
 
 
 def loads(text: str, *, case: str | Sequence[str] = (), set: Mapping[str, Number] | None = None, name: str = "model") -> Model:
-    """The same for a text; `name` stands in its diagnostics.
+    """Reads a model from a text. Error messages show `name` in the place of the file.
 
     Raises:
-        ModelError: all mistakes of the text at once; the text is the name of a file.
+        ModelError: all mistakes of the text at once, or the text is the name of a file.
         TypeError: `text` is no text.
 
     Example:
@@ -63,7 +63,7 @@ def _read(again: Source, set: Mapping[str, Number] | None, case: str | Sequence[
 
 
 def zoo() -> list[_core.ShippedModel]:
-    """The models that come with the library: name, path, title.
+    """Lists the models that come with the library: name, path, title.
 
     Example:
         >>> import anholon as an

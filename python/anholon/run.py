@@ -1,4 +1,4 @@
-"""A motion: arrays, events and a report of how far they can be trusted."""
+"""A run of a motion: arrays, events, and a report on their accuracy."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class Page:
-    """A page of HTML that stands by itself. A notebook shows it in a frame.
+    """A page of HTML that needs no other file. A notebook shows it in a frame.
 
     Example:
         >>> import anholon as an
@@ -50,7 +50,7 @@ class Page:
 
 
 class Figure:
-    """A figure as SVG, which a notebook shows. :meth:`Run.plot` makes it where Matplotlib is missing.
+    """A figure as SVG, which a notebook shows. :meth:`Run.plot` returns one if Matplotlib is not installed.
 
     Example:
         >>> import anholon as an
@@ -77,10 +77,10 @@ class Figure:
 
 
 class Run:
-    """One motion. ``run["theta"]`` is an array of what the library holds, without a copy; it cannot be written to.
+    """The run of one motion. ``run["theta"]`` is a read-only array of the memory of the library, not a copy.
 
-    It can be pickled, so that processes of a pool return it: with its numbers, events and report. Pages, files and
-    ``run(t)`` are computed again there.
+    A run can be pickled with its numbers, events and report, so that processes of a pool can return it. For pages, files and
+    ``run(t)`` the other process computes the motion again.
 
     Example:
         >>> import anholon as an
@@ -97,29 +97,29 @@ class Run:
         self._recipe = recipe
         self._columns = {} if core is None else {column.name: column for column in core.columns}
         self.model: Model = model
-        #: How the motion ended, with a remedy where it stopped before its end. A motion never raises: see expect().
+        #: How the motion ended, with a remedy if it stopped early. simulate() does not raise for an early stop; expect() does.
         self.outcome: _core.Outcome = outcome
 
     def __getstate__(self) -> dict[str, Any]:
-        """To another process go the numbers, the events and the report. It computes the rest again where it is asked for."""
+        """Pickles the numbers, the events and the report. The other process computes the rest again when it is needed."""
         kept = None if self._core is None or self._recipe is None else KeptRun(self._core, self._recipe)
         return {**self.__dict__, "_core": kept, "_dense": None}
 
     # ---- arrays ----
 
     def __getitem__(self, name: str) -> Array:
-        """The numbers of a column, shape (rows,), in SI units: "t", "x", "x'", "lambda.rod", "N.x", a state, a monitor.
+        """Returns the numbers of a column, shape (rows,), in SI units: "t", "x", "x'", "lambda.rod", "N.x", a state, a monitor.
 
-        A Greek letter and its spelled name are one name, here and wherever a name is given: ``run["θ"]`` is ``run["theta"]``.
+        A Greek letter and its spelled name are the same name, as in all other functions: ``run["θ"]`` is ``run["theta"]``.
 
         Raises:
-            ColumnError: there is no such column; a KeyError that names those that there are.
+            ColumnError: there is no such column. It is a KeyError and names the columns of the run.
         """
         core, name = self._column(name)
         return core.column(name)
 
     def _column(self, name: str) -> tuple[_core.Run | KeptRun, str]:
-        """What has a column, and the column's own name. Raises ColumnError if there is none."""
+        """Returns the core with a column, and the name of the column there. Raises ColumnError if there is no such column."""
         if self._core is None or not isinstance(name, str) or known(name, self._columns) not in self._columns:
             raise ColumnError(name, list(self._columns), self.outcome)
         return self._core, known(name, self._columns)
@@ -135,7 +135,7 @@ class Run:
         return 0 if self._core is None else self._core.rows
 
     def keys(self) -> list[str]:
-        """The names of the columns, so that ``dict(run)`` has all arrays."""
+        """Returns the names of the columns; by them ``dict(run)`` has all arrays."""
         return list(self._columns)
 
     @property
@@ -150,7 +150,7 @@ class Run:
 
     @property
     def long_names(self) -> dict[str, str]:
-        """What each column is, in words: "rate of theta", "multiplier of rolling.x"."""
+        """The meaning of each column in words: "rate of theta", "multiplier of rolling.x"."""
         return {name: _long_name(column) for name, column in self._columns.items()}
 
     @property
@@ -166,7 +166,7 @@ class Run:
             return np.empty((len(self), len(places)))
         if places == list(range(places[0], places[-1] + 1)):
             return self._core.block(places[0], len(places))
-        # Servo constraints may stand between ideal ones, whose multipliers are then not side by side.
+        # If servo constraints stand between ideal ones, the multipliers of the ideal ones are not neighbours.
         return np.column_stack([self[list(self._columns)[k]] for k in places])
 
     @property
@@ -178,26 +178,26 @@ class Run:
 
     @property
     def q(self) -> Array:
-        """The coordinates, shape (rows, coordinates), in the order of ``model.coordinates``: a view, as are the next ones."""
+        """The coordinates, shape (rows, coordinates), in the order of ``model.coordinates``: a view."""
         return self._of_kind("coordinates")
 
     @property
     def qdot(self) -> Array:
-        """Their rates, shape (rows, coordinates)."""
+        """The velocities, the rates of the coordinates, shape (rows, coordinates): a view."""
         return self._of_kind("velocities")
 
     @property
     def qddot(self) -> Array:
-        """Their accelerations, shape (rows, coordinates)."""
+        """The accelerations of the coordinates, shape (rows, coordinates): a view."""
         return self._of_kind("accelerations")
 
     @property
     def lam(self) -> Array:
-        """The multipliers of the ideal constraints, shape (rows, constraints). A view, unless servo constraints stand among them."""
+        """The multipliers of the ideal constraints, shape (rows, constraints): a view, unless servo constraints stand between them."""
         return self._of_kind("multipliers")
 
     def exact(self, name: str) -> list[Any]:
-        """The numbers of a column with all digits of the run: of more than 16, ``mpmath.mpf`` if mpmath is there, else texts.
+        """Returns the numbers of a column with all digits of the run: ``mpmath.mpf`` if mpmath is installed, else texts.
 
         Raises:
             ColumnError: there is no such column.
@@ -212,20 +212,20 @@ class Run:
             return [mpmath.mpf(text) for text in texts]
 
     def __call__(self, t: npt.ArrayLike, order: int = 0) -> dict[str, Array]:
-        """The motion at any times, by the polynomials of its steps, not interpolated from rows.
+        """Returns the motion at any times. The values are those of the polynomials of its steps, not interpolated between rows.
 
-        Coordinates have the accuracy of the rows; each derivative loses a digit or so.
+        Coordinates have the accuracy of the rows; each derivative loses about one digit.
 
         Args:
             t: times, s, any shape.
-            order: of the derivative: 0 the coordinates, 1 their rates, 2, …
+            order: the order of the derivative: 0 for the coordinates, 1 for their rates, 2, …
 
         Returns:
-            An array of the shape of t for each coordinate and each state of the model; NaN outside of the motion. One that
-            ``stop`` or Ctrl-C ended reaches to its last row.
+            An array of the shape of t for each coordinate and each state of the model; NaN outside of the motion. A motion
+            that ``stop`` or Ctrl-C ended reaches to its last row.
 
         Raises:
-            ModelError: `t` holds what is no time (``run["x"]`` is the column of a name), or there is no such derivative.
+            ModelError: `t` is no time or array of times (``run["x"]`` is the column of a name), or there is no such derivative.
             MotionError: the motion has not begun.
 
         Example:
@@ -238,7 +238,7 @@ class Run:
 
         try:
             given = np.asarray(t)
-            # What converts to numbers is no time if it is a truth value, or a date or duration in units of its own.
+            # Truth values, dates and durations would convert to numbers, but are no times in seconds.
             if given.dtype.kind in "bmMc" or (given.dtype.kind == "O" and any(isinstance(x, (bool, np.bool_, np.datetime64, np.timedelta64)) for x in given.flat)):
                 raise TypeError
             times = np.asarray(given, dtype=np.float64)
@@ -262,7 +262,7 @@ class Run:
         return [c.name for c in self.model.coordinates] + self.model.states
 
     def _at_start(self, times: Array, order: int) -> dict[str, Array]:
-        """What run(t) is of a motion that was ended before its first step: it has one row, or none."""
+        """Returns run(t) of a motion that was ended before its first step, which has one row or none."""
         import numpy as np
 
         found: dict[str, Array] = ByName()
@@ -272,15 +272,15 @@ class Run:
             found[name] = np.where(times == self._recipe.start, value, np.nan) if self._recipe else np.full(times.shape, np.nan)
         return found
 
-    # ---- how it went ----
+    # ---- outcome, events, report ----
 
     @property
     def ok(self) -> bool:
-        """Whether the end that was asked for is reached."""
+        """True if the motion reached the end that was asked for."""
         return self.outcome.ok
 
     def expect(self) -> Run:
-        """The run itself. Raises MotionError if it stopped before its end."""
+        """Returns the run itself. Raises MotionError if the motion stopped before its end."""
         if not self.ok:
             raise MotionError(repr(self.outcome), self.outcome)
         return self
@@ -300,11 +300,11 @@ class Run:
     # ---- other libraries, files ----
 
     def to_dict(self) -> dict[str, Array]:
-        """All columns, without copies."""
+        """Returns all columns by name, without copies."""
         return {name: self[name] for name in self}
 
     def to_pandas(self) -> pandas.DataFrame:
-        """A DataFrame with the columns of the run. Needs pandas.
+        """Returns a DataFrame with the columns of the run. Needs pandas.
 
         ``.attrs`` has "units" and "long_names" by column, and the "title".
         """
@@ -317,13 +317,13 @@ class Run:
         return frame
 
     def to_polars(self) -> polars.DataFrame:
-        """A DataFrame of polars, which it reads as an Arrow stream. Needs polars."""
+        """Returns a DataFrame of polars, which reads the run as an Arrow stream. Needs polars."""
         import polars
 
         return polars.DataFrame(self)
 
     def to_xarray(self) -> xarray.Dataset:
-        """A Dataset over the dimension t; the attributes "units" and "long_name" of its variables label plots. Needs xarray."""
+        """Returns a Dataset over the dimension t. Its variables have the attributes "units" and "long_name". Needs xarray."""
         import xarray
 
         def attributes(column: _core.Column) -> dict[str, str]:
@@ -336,11 +336,11 @@ class Run:
         )
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """The columns as an Arrow stream of one batch, which reads the numbers where they are."""
+        """Returns the columns as an Arrow stream of one batch, without copying the numbers."""
         return _arrow.stream(self.to_dict(), self.units)
 
     def save(self, path: str | os.PathLike[str]) -> str:
-        """Writes .csv, .json, .h5 or .parquet, by the end of the name. The file is there as a whole or stays as it was.
+        """Writes the run as .csv, .json, .h5 or .parquet, by the end of the name. A write that fails leaves the file as it was.
 
         Raises:
             ModelError: the name has another ending, or the file cannot be written.
@@ -348,7 +348,7 @@ class Run:
         return self._required().write(os.fspath(path))
 
     def json(self) -> Any:
-        """Columns, rows and the report, as ``anholon simulate --json`` prints them."""
+        """Returns columns, rows and the report, which ``anholon simulate --json`` prints."""
         return json.loads(self._required().json())
 
     def _required(self) -> _core.Run | KeptRun:
@@ -359,12 +359,12 @@ class Run:
     # ---- pictures ----
 
     def page(self, path: str | None = None, *, forms: Sequence[str] = (), proof: bool = True) -> Page:
-        """The motion as a page of HTML that stands by itself: equations, proof, plots, animation, trust.
+        """Returns a page of HTML on the motion that needs no other file: equations, proof, plots, animation, trust.
 
         Args:
-            path: a file for it; a notebook shows the page in its output.
-            forms: whose equations are shown; chosen if there are none.
-            proof: proves that the forms agree, where the equations are not too long.
+            path: a file to which the page is written, too; a notebook shows the page in its output.
+            forms: the forms whose equations are shown; the program chooses them if there are none.
+            proof: True proves that the forms agree, if the equations are not too long.
 
         Raises:
             ModelError: a form is not known, or there are no rows.
@@ -375,13 +375,13 @@ class Run:
         return page
 
     def animate(self, *, plots: bool = False) -> Any:
-        """The motion as a picture that plays in a notebook.
+        """Returns an animation of the motion for a notebook.
 
-        Where anywidget is installed it is a widget, which plays in Jupyter, VS Code, Colab and marimo; its ``time`` and
+        If anywidget is installed, the animation is a widget for Jupyter, VS Code, Colab and marimo, whose ``time`` and
         ``playing`` can be set. Without anywidget it is the page of the motion in a frame.
 
         Args:
-            plots: shows plots of all columns below the picture, with the same time.
+            plots: True shows plots of all columns below the animation, with the same time.
 
         Raises:
             ModelError: there are no rows.
@@ -391,11 +391,11 @@ class Run:
         return _widget.widget(self._required().picture_data(), plots=plots)
 
     def figure(self, *names: str, x: str = "t") -> Figure:
-        """Columns over another one as SVG, by the program's own hand: no other package is needed.
+        """Returns a figure of columns over another one as SVG. The program draws it; no other package is needed.
 
         Args:
             names: columns to draw, or patterns with * and ?; the coordinates if there are none.
-            x: the column they are drawn over.
+            x: the column along the horizontal axis.
 
         Raises:
             ModelError: there is no such column, or there are no rows.
@@ -403,11 +403,11 @@ class Run:
         return Figure(self._required().figure([known(name, self._columns) for name in names], known(x, self._columns)))
 
     def plot(self, *names: str, x: str = "t", ax: Any = None) -> Any:
-        """Draws columns (all coordinates if none is named) over another one: Matplotlib's axes, or a :class:`Figure` without Matplotlib.
+        """Draws columns over another one. Returns the axes of Matplotlib, or a :class:`Figure` if Matplotlib is not installed.
 
         Args:
-            names: columns to draw.
-            x: the column they are drawn over.
+            names: columns to draw; the coordinates if there are none.
+            x: the column along the horizontal axis.
             ax: axes of Matplotlib; new ones if it is None.
 
         Raises:
@@ -449,7 +449,7 @@ class Run:
 
 
 def _long_name(column: _core.Column) -> str:
-    """What a column is, in words."""
+    """Returns the meaning of a column in words."""
     base = column.name.rstrip("'")
     of = base.split(".", 1)[1] if column.kind in ("multipliers", "rates of multipliers", "reactions") and "." in base else base
     words = {
@@ -468,12 +468,12 @@ def _long_name(column: _core.Column) -> str:
 
 
 def _label(column: _core.Column) -> str:
-    """The symbol of a column with its unit, as Matplotlib writes it."""
+    """Returns the symbol of a column with its unit, for Matplotlib."""
     from matplotlib.mathtext import MathTextParser
 
     unit = f" [{column.unit}]" if column.unit else ""
     try:
         MathTextParser("path").parse(f"${column.latex}$")
-    except ValueError:  # LaTeX of the user's that Matplotlib does not read
+    except ValueError:  # the user wrote LaTeX that Matplotlib cannot read
         return column.name.replace("$", r"\$") + unit
     return f"${column.latex}$" + unit

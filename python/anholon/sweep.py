@@ -1,4 +1,4 @@
-"""Many motions: arrays over the cases."""
+"""Sweeps of many motions: arrays over the cases."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ class Law(str):
 
 
 def is_law(of: object) -> bool:
-    """Whether values of a sweep are a law, or a text that is one."""
+    """True if the values of a sweep are a law or the text of a law."""
     return isinstance(of, Law) or (isinstance(of, str) and (":" in of or re.match(r"\s*(normal|uniform)\s*\(", of) is not None))
 
 
 def normal(mean: Number, deviation: Number) -> Law:
-    """Normally distributed values, of a mean and a standard deviation in SI units.
+    """Returns the law of normally distributed values with a mean and a standard deviation in SI units.
 
     Example:
         >>> import anholon as an
@@ -49,7 +49,7 @@ def normal(mean: Number, deviation: Number) -> Law:
 
 
 def uniform(low: Number, high: Number) -> Law:
-    """Evenly distributed values between two numbers in SI units.
+    """Returns the law of evenly distributed values between two numbers in SI units.
 
     Example:
         >>> import anholon as an
@@ -61,7 +61,8 @@ def uniform(low: Number, high: Number) -> Law:
 
 
 def grid(low: Number, high: Number, count: int) -> Law:
-    """Evenly spaced values, both ends included, in SI units. Each is computed when its case is: 10^9 values take no memory.
+    """Returns the law of evenly spaced values, both ends included, in SI units. A value is computed with its case, so that 10^9
+    values take no memory.
 
     Example:
         >>> import anholon as an
@@ -73,7 +74,7 @@ def grid(low: Number, high: Number, count: int) -> Law:
 
 
 def scenarios_of(core: _core.Sweep | KeptSweep) -> dict[str, npt.NDArray[Any]]:
-    """The scenario of each case by the name "case"; nothing if no scenarios vary."""
+    """Returns the scenario of each case by the name "case"; an empty dictionary if no scenarios vary."""
     import numpy as np
 
     names = np.array(core.scenarios, dtype=object)
@@ -81,7 +82,7 @@ def scenarios_of(core: _core.Sweep | KeptSweep) -> dict[str, npt.NDArray[Any]]:
 
 
 class Sweep(Mapping[str, "Array"]):
-    """Final states of many motions; ``sweep["x"]`` has one number for each case, NaN where a case has no final state.
+    """Final states of many motions. ``sweep["x"]`` has one number for each case, NaN for a case without a final state.
 
     Example:
         >>> import anholon as an
@@ -113,12 +114,12 @@ class Sweep(Mapping[str, "Array"]):
         self.varied.update((name, core.varied(name)) for name in names if name not in self.varied)
 
     def __getstate__(self) -> dict[str, Any]:
-        """To another process go all numbers and outcomes. For files and figures by the program's own hand it is computed again."""
+        """Pickles all numbers and outcomes. For files and figures of the program the other process computes the sweep again."""
         numbers = [name for name in self.varied if name != "case" or not self._core.scenarios]
         return {**self.__dict__, "_core": KeptSweep(self._core, numbers, self._again)}
 
     def __getitem__(self, name: str) -> Array:
-        """A column at the end of each motion, shape (cases,), in SI units.
+        """Returns a column at the end of each motion, shape (cases,), in SI units.
 
         Raises:
             KeyError: there is no such column.
@@ -126,7 +127,7 @@ class Sweep(Mapping[str, "Array"]):
         return self._core.column(self._own(name))
 
     def _own(self, name: str) -> str:
-        """The column's own name. Raises KeyError if there is none."""
+        """Returns the name that a column has in the sweep. Raises KeyError if there is no such column."""
         columns = self._core.columns
         if not isinstance(name, str) or known(name, columns) not in columns:
             raise KeyError(f"there is no column {name!r}; there are {', '.join(columns)}")
@@ -134,21 +135,22 @@ class Sweep(Mapping[str, "Array"]):
 
     @property
     def units(self) -> dict[str, str]:
-        """The units of the columns and of what varies, as far as the model tells them."""
+        """The units of the columns and of the names that vary, if the model has units for them."""
         return dict(self._core.units)
 
     @property
     def notes(self) -> list[str]:
-        """Reductions that have no value in some of the cases, and why cases stopped: for each outcome how many there are, the first one, its message and a hint."""
+        """Notes on reductions that have no value in some cases, and on cases that stopped: for each outcome the number of cases, the first
+        case, its message and a hint."""
         return list(self._core.notes)
 
     @property
     def times(self) -> Array:
-        """The times of ``rows``, s."""
+        """The times of ``rows``, s, shape (times,)."""
         return self._core.times
 
     def rows(self, name: str) -> Array:
-        """A column at the times of ``at``, shape (cases, times); NaN where a motion ended before.
+        """Returns a column at the times of ``at``, shape (cases, times); NaN at times after the end of a motion.
 
         Raises:
             KeyError: there is no such column, or it is a reduction, which is one number for each motion.
@@ -169,34 +171,34 @@ class Sweep(Mapping[str, "Array"]):
         return iter(self._core.columns)
 
     def __len__(self) -> int:
-        """The number of columns; ``cases`` is that of the motions."""
+        """The number of columns; ``cases`` is the number of motions."""
         return len(self._core.columns)
 
     @property
     def cases(self) -> int:
-        """How many motions there are."""
+        """The number of motions."""
         return self._core.cases
 
     @property
     def finished(self) -> int:
-        """How many reached their end."""
+        """The number of motions that reached their end."""
         return self._core.finished
 
     @property
     def t(self) -> Array:
-        """The times reached, s, shape (cases,)."""
+        """The times that the motions reached, s, shape (cases,)."""
         return self._core.t
 
     @property
     def outcome(self) -> _core.Outcome:
-        """Finished, or interrupted."""
+        """The outcome of the whole sweep: finished or interrupted."""
         return self._core.outcome
 
     def outcome_of(self, case: int) -> _core.Outcome:
-        """How one motion ended.
+        """Returns the outcome of one motion.
 
         Raises:
-            IndexError: there are not so many cases.
+            IndexError: there is no such case.
         """
         if not 0 <= case < self.cases:
             raise IndexError(f"there are {self.cases} cases")
@@ -204,26 +206,26 @@ class Sweep(Mapping[str, "Array"]):
 
     @property
     def outcomes(self) -> list[str]:
-        """The kinds of all outcomes."""
+        """The kind of the outcome of each motion."""
         return [self._core.outcome_of(case).kind for case in range(self.cases)]
 
     @property
     def events(self) -> list[str]:
-        """The names of the events that ended the motions; empty where none did."""
+        """The name of the event that ended each motion; an empty text if no event did."""
         return [self._core.event(case) for case in range(self.cases)]
 
     @property
     def steps(self) -> Array:
-        """How many steps each motion took, shape (cases,)."""
+        """The number of steps of each motion, shape (cases,)."""
         import numpy as np
 
         return np.array([self._core.steps(case) for case in range(self.cases)], dtype=float)
 
     def to_dict(self) -> dict[str, npt.NDArray[Any]]:
-        """What varies, named as in ``anholon sweep`` (an initial value is ``x(0)``), the times reached and all columns.
+        """Returns the values that vary, named as in ``anholon sweep`` (an initial value is ``x(0)``), the times reached and all columns.
 
-        A scenario is in ``case_name``, an array of texts. With times (``at``) it is a long table: a row for each case and
-        time, and the columns ``case`` and ``t`` say which.
+        Scenarios are in ``case_name``, an array of texts. With times (``at``) the table is long: it has a row for each case and
+        time, which the columns ``case`` and ``t`` tell.
         """
         table = self._varied_columns()
         times = self.times.size
@@ -246,20 +248,20 @@ class Sweep(Mapping[str, "Array"]):
         return {"case_name": table.pop("case"), **table} if self._core.scenarios else table
 
     def _endings(self) -> list[str]:
-        """How the motions ended, for pictures: the outcomes, and in place of ``finished`` the events that ended them."""
+        """Returns how the motions ended, for figures: the outcomes, and instead of ``finished`` the events that ended motions."""
         from ._sweep_plot import ending
 
         return [ending(outcome, event) for outcome, event in zip(self.outcomes, self.events, strict=True)]
 
     def _outcomes(self) -> tuple[int, list[str]]:
-        """The place and the words of the column of outcomes in a table."""
+        """Returns the place of the column of outcomes in a table, and its words."""
         times = self.times.size
         if times == 0:
             return len(self.varied), self.outcomes
         return 1 + len(self.varied), [outcome for outcome in self.outcomes for _ in range(times)]
 
     def to_pandas(self) -> pandas.DataFrame:
-        """A DataFrame with a row for each case, or for each case and time, and its outcome. Needs pandas."""
+        """Returns a DataFrame with a row for each case, or for each case and time, with its outcome. Needs pandas."""
         import pandas
 
         frame = pandas.DataFrame(self.to_dict())
@@ -270,14 +272,14 @@ class Sweep(Mapping[str, "Array"]):
         return frame
 
     def to_polars(self) -> polars.DataFrame:
-        """The same for polars. Needs polars."""
+        """Returns the table of :meth:`to_pandas` as a DataFrame of polars. Needs polars."""
         import polars
 
         place, outcomes = self._outcomes()
         return polars.DataFrame(self.to_dict()).insert_column(place, polars.Series("outcome", outcomes))
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """The columns of :meth:`to_pandas` as an Arrow stream of one batch; numbers are read where they are, words are texts."""
+        """Returns the columns of :meth:`to_pandas` as an Arrow stream of one batch. Numbers are not copied; outcomes are texts."""
         import numpy as np
 
         place, outcomes = self._outcomes()
@@ -289,9 +291,10 @@ class Sweep(Mapping[str, "Array"]):
     # ---- files, pictures ----
 
     def save(self, path: str | os.PathLike[str]) -> str:
-        """Writes .h5, .csv, .json or .parquet, by the end of the name, with the columns and numbers of ``anholon sweep -o``.
+        """Writes the sweep as .h5, .csv, .json or .parquet, by the end of the name, with the columns and numbers of ``anholon sweep -o``.
 
-        Cases that Ctrl-C left out are not written. A folder is written while a sweep is computed: ``model.sweep(..., out="falls/")``.
+        Cases that were not computed because of Ctrl-C are not written. ``model.sweep(..., out="falls/")`` writes a folder while the
+        sweep is computed.
 
         Returns:
             The name of the file.
@@ -314,18 +317,18 @@ class Sweep(Mapping[str, "Array"]):
         return self._core.write(name)
 
     def figure(self, *names: str, x: str | None = None, y: str | None = None) -> Figure:
-        """The cases as SVG, by the program's own hand: what ``anholon plot`` shows of a sweep.
+        """Returns a figure of the cases as SVG, which ``anholon plot`` shows of a sweep. No other package is needed.
 
-        Where one number varies, columns at the end of the motions are curves over it; if several cases have the same value of
-        it, the curves are the quantiles of 10, 50 and 90 %. Where two vary, one column is a map over them.
+        If one name varies, columns at the end of the motions are curves over its values; if several cases have the same value,
+        the curves are the quantiles of 10, 50 and 90 %. If two names vary, one column is a map over their values.
 
         Args:
-            names: columns to draw, or patterns with * and ?; the coordinates if there are none, in a map the outcomes.
+            names: columns to draw, or patterns with * and ?; if there are none, the coordinates, in a map the outcomes.
             x: the column along the horizontal axis; the first that varies if it is None. An initial value is ``"phi'(0)"``.
             y: the column along the vertical axis of a map; the second that varies if it is None.
 
         Raises:
-            ModelError: there is no such column; several columns in a map; no number varies.
+            ModelError: there is no such column, a map has several columns, or no number varies.
 
         Example:
             >>> import anholon as an
@@ -335,19 +338,19 @@ class Sweep(Mapping[str, "Array"]):
         return Figure(self._core.figure([spelled(name) for name in names], spelled(x or ""), spelled(y or "")))
 
     def plot(self, *names: str, x: str | None = None, y: str | None = None, ax: Any = None) -> Any:
-        """Draws what :meth:`figure` shows: Matplotlib's axes, or a :class:`Figure` without Matplotlib.
+        """Draws the figure of :meth:`figure` with Matplotlib and returns the axes; returns a :class:`Figure` without Matplotlib.
 
-        If several cases have the same x, a curve is their median, in a band from 10 to 90 %.
+        If several cases have the same x, a curve is their median, in a band from the 10 % to the 90 % quantile.
 
         Args:
-            names: columns to draw; the coordinates if there are none, in a map the outcomes.
+            names: columns to draw; if there are none, the coordinates, in a map the outcomes.
             x: the column along the horizontal axis; the first that varies if it is None.
             y: the column along the vertical axis of a map; the second that varies if it is None.
             ax: axes of Matplotlib; new ones if it is None.
 
         Raises:
             KeyError: there is no such column.
-            ModelError: several columns in a map; no number varies.
+            ModelError: a map has several columns, or no number varies.
 
         Example:
             >>> import anholon as an

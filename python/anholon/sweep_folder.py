@@ -1,4 +1,4 @@
-"""Sweeps in folders: any number of processes compute the parts, and any process reads them."""
+"""Sweeps in folders: any number of processes compute the parts, and any process can read the parts."""
 
 from __future__ import annotations
 
@@ -28,12 +28,13 @@ if TYPE_CHECKING:
 
 
 class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
-    """A sweep in a folder. It is read when it is asked, so it shows the parts that are there then.
+    """A sweep in a folder. Each access reads the folder, so it sees the parts that are complete at that moment.
 
-    ``folder["theta"]`` has one number for each case (each case and time with ``at``), in the order of the cases, NaN where the
-    part of the case is missing; columns of words (``outcome``, ``event``, ``case_name``) are arrays of strings, empty there.
-    :meth:`to_dict` and the frames have the rows of the parts that are there. Each part that is read here is compared with the hash in
-    its file; :meth:`scan`, which hands the files to polars, compares nothing. It can be pickled: another process opens the folder again.
+    ``folder["theta"]`` has one number for each case (with ``at``, for each case and time), in the order of the cases, NaN if the
+    part of the case is missing; columns of words (``outcome``, ``event``, ``case_name``) are arrays of strings, which are empty
+    for missing parts. :meth:`to_dict` and the frames have the rows of the complete parts only. Reading a part compares it with the
+    hash in its file, except in :meth:`scan`, where polars reads the files. A sweep can be pickled: another process opens the folder
+    again.
 
     Example:
         >>> import anholon as an, tempfile
@@ -78,31 +79,31 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
     @property
     def cases(self) -> int:
-        """How many cases the whole sweep has."""
+        """The number of cases of the whole sweep."""
         return self._core.cases
 
     @property
     def parts(self) -> int:
-        """How many parts the whole sweep has."""
+        """The number of parts of the whole sweep."""
         return self._core.parts
 
     @property
     def chunk(self) -> int:
-        """How many cases a part has."""
+        """The number of cases of a part."""
         return self._core.chunk
 
     @property
     def missing(self) -> list[int]:
-        """The numbers of the parts that are not there."""
+        """The numbers of the missing parts."""
         return self._core.missing()
 
     @property
     def complete(self) -> bool:
-        """Whether all parts are there."""
+        """True if no part is missing."""
         return not self._core.missing()
 
     def progress(self) -> _core.FolderProgress:
-        """How far the sweep is: parts, cases, outcomes, cases per second.
+        """Returns the progress of the sweep: parts, cases, outcomes, cases per second.
 
         Raises:
             ModelError: a part is damaged, or belongs to another sweep.
@@ -111,34 +112,35 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
     @property
     def outcomes(self) -> dict[str, int]:
-        """How many of the cases that are there ended in which way."""
+        """The number of cases of each outcome, among the cases of the complete parts."""
         return self._core.progress().outcomes
 
     @property
     def notes(self) -> list[str]:
-        """Reductions that have no value in some of the cases that this object computed, and why cases stopped: for each outcome how many there are, the first one, its message and a hint."""
+        """Notes on reductions that have no value in some of the cases that this object computed, and on cases that stopped: for each
+        outcome the number of cases, the first case, its message and a hint."""
         return [*self._computed_notes, *self._core.progress().notes]
 
     @property
     def units(self) -> dict[str, str]:
-        """The units of the columns, as far as the model tells them."""
+        """The units of the columns, if the model has units for them."""
         return dict(self._core.units())
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
-        """A column, shape (cases,) or (cases * times,), in SI units: ``folder["theta"][k]`` belongs to case k without ``at``.
+        """Returns a column, shape (cases,) or with ``at`` (cases * times,), in SI units. Without ``at``, entry k belongs to case k.
 
-        A number is NaN, and a word empty, where the part of its case is missing; whole numbers are doubles then.
+        If the part of a case is missing, a number is NaN and a word is empty; whole numbers become doubles then.
 
         Raises:
             KeyError: there is no such column.
-            ModelError: a part was changed.
+            ModelError: a part was changed after it was written.
         """
         name = known(name, self._core.columns)
         columns = self._columns(["case", name])
         return _over_all(columns["case"], columns[name], self.cases) if "case" in columns else columns[name]
 
     def _columns(self, names: Iterable[str]) -> dict[str, npt.NDArray[Any]]:
-        """Columns of the parts that are there, read at once; a folder of an earlier version may lack the column "case"."""
+        """Returns columns of the complete parts, read in one pass. A folder of an earlier version may lack the column "case"."""
         for name in names:
             if name not in self._core.columns and name != "case":
                 raise KeyError(f"there is no column {name!r}; there are {', '.join(self._core.columns)}")
@@ -151,12 +153,12 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
     @property
     def generations(self) -> list[int]:
-        """The cases of each generation that is planned: what was asked for, then those that refine borders."""
+        """The number of cases of each generation: first that of the request, then those that refine borders."""
         return self._core.progress().generations
 
     @property
     def varied(self) -> list[str]:
-        """The names of the columns of what varies."""
+        """The names of the columns that vary."""
         names = self._core.columns
         # The command line keeps the words of --vary: NAME=VALUES or NAME~LAW.
         by_command = names_of_table(self._core.asked("table of cases")) | {re.split("[=~]", word)[0] for word in self._core.asked("vary").split()}
@@ -168,20 +170,20 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return [name for name in names if name not in ("case", "case_name") and varies(name)]
 
     def judge(self, *, stop: Callable[[], object] | None = None) -> dict[str, Any]:
-        """How far the cases can be trusted: digits to trust and residuals of some of them, which are computed once more.
+        """Estimates how far the cases can be trusted. It computes some cases once more, with digits to trust and residuals.
 
-        The folder keeps the answer, ``anholon sweep status`` tells it, and a second call reads it.
+        The folder keeps the result, which ``anholon sweep status`` shows and a second call reads.
 
         Args:
-            stop: asked every 20 ms; True ends the computation.
+            stop: a function that is called every 20 ms; True ends the computation.
 
         Returns:
             ``error_estimate`` and ``residuals``, as in the JSON of ``anholon sweep``, and ``text``, a list of sentences.
 
         Raises:
-            ModelError: parts are missing; the folder was made by the command line and is not judged yet.
-            MotionError: ``stop`` ended it.
-            KeyboardInterrupt: Ctrl-C.
+            ModelError: parts are missing, or the folder was made by the command line and is not judged yet.
+            MotionError: ``stop`` ended the computation.
+            KeyboardInterrupt: the user pressed Ctrl-C.
 
         Example:
             >>> import anholon as an, tempfile
@@ -200,12 +202,12 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return answer
 
     def where(self, conditions: Mapping[str, Any]) -> npt.NDArray[Any]:
-        """The numbers of the cases for which each column has the value given, or lies within the pair given, ends included.
+        """Returns the numbers of the cases in which each column has the given value, or lies in the given range, ends included.
 
-        ``{"case": "moon"}`` chooses a scenario, whose name is in the column ``case_name``; ``case`` holds the numbers.
+        ``{"case": "moon"}`` chooses a scenario by its name in the column ``case_name``. Other values of ``case`` are numbers of cases.
 
         Returns:
-            Sorted numbers, shape (cases that are chosen,).
+            Sorted numbers, shape (chosen cases,).
 
         Raises:
             KeyError: there is no such column.
@@ -229,15 +231,15 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return np.unique(numbers[chosen])
 
     def run(self, case: int, **options: Any) -> Run:
-        """The whole motion of a case, computed anew with the numbers of the case.
+        """Simulates the whole motion of a case, with the numbers of the case.
 
         Args:
-            case: its number, as in the column ``case``.
-            options: as in :meth:`Model.simulate`: ``every=0.01``, ``to=20``.
+            case: the number of the case, as in the column ``case``.
+            options: arguments of :meth:`Model.simulate`: ``every=0.01``, ``to=20``.
 
         Raises:
             IndexError: there is no such case.
-            ModelError: the folder was made by the command line, and does not keep what varies or the files of the model.
+            ModelError: the folder was made by the command line, and lacks the values that vary or the files of the model.
         """
         from ._sweep_case import run_of
         from ._sweep_filling import computing
@@ -247,11 +249,11 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return run_of(self._core, lambda: computing(self.path), case, options)
 
     def figure(self, *names: str, x: str | None = None, y: str | None = None) -> Figure:
-        """The parts that are there as SVG, by the program's own hand: what ``anholon plot`` shows of the folder.
+        """Returns a figure of the complete parts as SVG, which ``anholon plot`` shows of the folder. No other package is needed.
 
-        Where one number varies, columns are curves over it; where two vary, one column is a map over them. Cases that have rows
-        at several times are curves over ``t``, up to eight of them, and else the quantiles of 10, 50 and 90 % at each time. If
-        parts are missing, a map has the whole grid, and the title tells how many parts there are.
+        If one name varies, columns are curves over its values; if two vary, one column is a map over their values. Up to eight cases
+        with rows at several times are curves over ``t``; more than eight are shown by the quantiles of 10, 50 and 90 % at each
+        time. If parts are missing, a map has the whole grid, and the title tells how many parts are complete.
 
         Args:
             names: columns to draw, or patterns with * and ?; the outcomes if there are none.
@@ -259,7 +261,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
             y: the column along the vertical axis of a map; the second that varies if it is None.
 
         Raises:
-            ModelError: there is no such column; several columns in a map; no number varies; no part is there.
+            ModelError: there is no such column, a map has several columns, no number varies, or all parts are missing.
 
         Example:
             >>> import anholon as an, tempfile
@@ -270,9 +272,9 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return Figure(self._core.figure(list(names), x or "", y or ""))
 
     def plot(self, *names: str, x: str | None = None, y: str | None = None, ax: Any = None) -> Any:
-        """Draws what :meth:`figure` shows: Matplotlib's axes, or a :class:`Figure` without Matplotlib.
+        """Draws the figure of :meth:`figure` with Matplotlib and returns the axes; returns a :class:`Figure` without Matplotlib.
 
-        If several cases have the same x, a curve is their median, in a band from 10 to 90 %.
+        If several cases have the same x, a curve is their median, in a band from the 10 % to the 90 % quantile.
 
         Args:
             names: columns to draw; the outcomes if there are none.
@@ -282,7 +284,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
         Raises:
             KeyError: there is no such column.
-            ModelError: several columns in a map; no number varies; no part is there.
+            ModelError: a map has several columns, no number varies, or all parts are missing.
 
         Example:
             >>> import anholon as an, tempfile
@@ -296,9 +298,9 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return _sweep_plot.plot_folder(self, list(names), x, y, ax)
 
     def scan(self) -> polars.LazyFrame:
-        """A lazy frame of polars over the parts that are there: it reads the columns and rows that are asked for. Needs polars.
+        """Returns a lazy frame of polars over the complete parts, which reads only the columns and rows that are used. Needs polars.
 
-        polars reads the files: a damaged one is not compared with its hash, as it is by :meth:`to_polars`.
+        polars reads the files and does not compare them with their hashes, so it may not notice a damaged file; :meth:`to_polars` does.
         """
         import polars
 
@@ -308,15 +310,15 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return iter(self._core.columns)
 
     def __len__(self) -> int:
-        """The number of columns; ``cases`` is that of the motions."""
+        """The number of columns; ``cases`` is the number of motions."""
         return len(self._core.columns)
 
     def to_dict(self, columns: Sequence[str] = ()) -> dict[str, npt.NDArray[Any]]:
-        """Columns of the parts that are there as arrays, all of them without names; each part is read once."""
+        """Returns columns of the complete parts as arrays by name; all columns if none is named. Each part is read once."""
         return {name: _array(column) for name, column in self._read(columns)}
 
     def to_pandas(self, columns: Sequence[str] = ()) -> pandas.DataFrame:
-        """A DataFrame with a row for each case; words are categories. Needs pandas."""
+        """Returns a DataFrame with the rows of the complete parts; words are categories. Needs pandas."""
         import pandas
 
         def of(column: Any) -> Any:
@@ -325,7 +327,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return pandas.DataFrame({name: of(column) for name, column in self._read(columns)})
 
     def to_polars(self, columns: Sequence[str] = ()) -> polars.DataFrame:
-        """The same for polars. Needs polars."""
+        """Returns a DataFrame of polars with the rows of the complete parts; words are texts. Needs polars."""
         import polars
 
         def of(column: Any) -> Any:
@@ -334,7 +336,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return polars.DataFrame({name: of(column) for name, column in self._read(columns)})
 
     def to_arrow(self, columns: Sequence[str] = ()) -> pyarrow.Table:
-        """A table of Arrow; words are dictionaries. Needs pyarrow."""
+        """Returns a table of Arrow with the rows of the complete parts; words are dictionaries. Needs pyarrow."""
         import pyarrow
 
         def of(column: Any) -> Any:
@@ -353,12 +355,12 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         refine: int = 0,
         refine_by: tuple[str, float] | None = None,
     ) -> SweepFolder:
-        """Computes what is missing, as :meth:`Model.sweep` with the same arguments does; it returns this object.
+        """Computes the missing parts, as :meth:`Model.sweep` with the same arguments does. Returns the sweep in the folder.
 
         Raises:
-            ModelError: the folder was made by the command line, or the files of its model are not there.
+            ModelError: the folder was made by the command line, or files of its model are missing.
             OSError: a part could not be written.
-            Interrupted: Ctrl-C; the complete parts are kept.
+            Interrupted: the user pressed Ctrl-C; the complete parts are kept.
         """
         from ._sweep_filling import computing, fill
 
@@ -381,7 +383,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
 
 def open_sweep(folder: str | os.PathLike[str]) -> SweepFolder:
-    """Opens the folder of a sweep, to look at it or to go on with it.
+    """Opens the folder of a sweep, to read or to continue it.
 
     Raises:
         ModelError: the folder holds no sweep.
@@ -398,7 +400,7 @@ def open_sweep(folder: str | os.PathLike[str]) -> SweepFolder:
 
 
 def _over_all(numbers: npt.NDArray[Any], values: npt.NDArray[Any], cases: int) -> npt.NDArray[Any]:
-    """A column over all cases, from its rows in the parts that are there and the numbers of their cases, which ascend."""
+    """Returns a column over all cases. `values` are its rows in the complete parts, `numbers` the numbers of their cases, which ascend."""
     import numpy as np
 
     times = numbers.size // np.unique(numbers).size if numbers.size > 0 else 1

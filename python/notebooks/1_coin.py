@@ -1,8 +1,8 @@
 # %% [markdown]
 # # 1. A coin that does not fall
 #
-# A coin that rolls fast enough stays up by itself. This notebook writes the coin as a model, lets the equations be derived and proved, and then
-# asks at which speed the coin begins to fall.
+# A coin that rolls fast enough stays up by itself. This notebook writes the coin as a model, derives its equations and proves that their forms
+# agree, and then finds the speed at which the coin begins to fall.
 
 # %%
 import anholon as an
@@ -24,15 +24,15 @@ view = {path = {trace = "contact"}, hide = ["contact"]}
 coin.check()
 
 # %% [markdown]
-# The one line `vel(coin, contact) = 0` is the whole of rolling: the point of the coin that touches the table is at rest. It gives two
-# constraints that no formula in the coordinates alone can replace. The coin has five coordinates and three degrees of freedom.
+# The line `vel(coin, contact) = 0` says that the coin rolls: the point of the coin that touches the table is at rest. The line gives two
+# constraints that no equation between coordinates alone can replace. The coin has five coordinates and three degrees of freedom.
 
 # %%
 coin.equations()
 
 # %% [markdown]
-# Routh's equations have a multiplier for each constraint. There are many other classical forms. They look different, and each is proved to say the
-# same: no number is compared, the difference is shown to be zero as a formula.
+# Routh's equations have a multiplier for each constraint. There are many other classical forms. They look different, but each is proved to
+# agree with Routh's: the proof compares no numbers, it shows that the difference is zero as a formula.
 
 # %%
 coin.prove("maggi", "kane", "boltzmann-hamel")
@@ -55,7 +55,7 @@ run.animate()
 # %% [markdown]
 # ## Where does it begin to fall?
 #
-# A start that is upright but for a hair's breadth, with ever less spin: the least tilt that the coin has in one second. Upright is 90 degrees.
+# The coin now starts almost upright, with less and less spin. Each motion gives the least tilt within one second; 90 degrees is upright.
 
 # %%
 spins = np.arange(10, 32.1, 1)
@@ -75,8 +75,8 @@ plt.xlabel("spin, rad/s")
 plt.ylabel("least tilt, degrees");
 
 # %% [markdown]
-# **The surprise.** There is an edge. A coin that spins faster than $\sqrt{g/3R}$ (the grey line; a result for small tilts) only sways, a slower one
-# goes down. Nothing steers the coin and nothing is lost: the energy of every one of these motions is conserved to the last digits.
+# **The surprise.** There is a sharp limit. A coin that spins faster than $\sqrt{g/3R}$ (the grey line; a result for small tilts) only sways, a slower
+# one falls. No force steers the coin and no energy is lost: each of these motions conserves its energy to the last digits.
 
 # %%
 tilts = np.degrees(least)

@@ -2,7 +2,7 @@
 # # 2. A bicycle without a rider's hands
 #
 # A bicycle that rolls by itself is stable in a window of speeds. The model is the benchmark of Meijaard, Papadopoulos, Ruina and Schwab (2007): four
-# rigid bodies, two thin wheels that roll without slipping, one that must touch the ground.
+# rigid bodies, of which the two thin wheels roll without slipping, and a constraint that keeps the front wheel on the ground.
 
 # %%
 import anholon as an
@@ -52,7 +52,7 @@ axes.legend();
 
 # %% [markdown]
 # **The surprise.** At 5 m/s the bicycle recovers, and it does so by steering *into* the fall: the handlebar turns to the side to which the frame leans,
-# with nobody holding it. Its heading is not recovered, since no force of this system knows where north is: the direction after the push stays another one.
+# with nobody holding it. It does not return to its old heading, since no force of the system depends on the heading.
 
 # %%
 run = lean[5.0]

@@ -23,7 +23,7 @@ as_read
 
 # %% [markdown]
 # **The surprise.** The comparison does not only say *false*. Where a few changes of signs, factors or names make a line true, it finds them and proves
-# the corrected line. Most of these are losses of the scan: dots of time derivatives and exponents that the reader did not see.
+# the corrected line. Most of these changes restore what the scan lost: dots of time derivatives, and exponents.
 
 # %%
 for line in as_read:
@@ -42,8 +42,8 @@ len(restored)
 # %% [markdown]
 # ## A proof that can be checked by others
 #
-# The equations of the paper are one form among many. That the forms agree is proved, and the proof is a certificate: a text which a second, small program
-# checks without the first one.
+# The equations of the paper are one form among many. Anholon proves that the forms agree. The proof comes with a certificate, a text that a second, small
+# program checks without the first one.
 
 # %%
 proof = model.prove()
@@ -54,8 +54,8 @@ checked = an.verify(proof)
 checked
 
 # %% [markdown]
-# All of them say the same, but one: the *vakonomic* equations, which come from a variational principle with the constraint as a side condition. They are
-# known to describe another motion, and the proof refutes them by a number.
+# All forms agree but one: the *vakonomic* equations, which come from a variational principle with the constraint as a side condition. They are known to
+# describe another motion, and a number refutes that they agree with the others.
 
 # %%
 assert [form.form for form in proof.forms if form.verdict != "proved"] == ["vakonomic"]
@@ -63,7 +63,7 @@ assert [form.form for form in proof.forms if form.verdict != "proved"] == ["vako
 # %% [markdown]
 # ## Your own equations
 #
-# Any equation in the names of the model can be asked. Here a sign is wrong in the constraint of a skate (the blade of Chaplygin's sleigh).
+# Any equation in the names of the model can be compared. Here a sign is wrong in the constraint of a skate (the blade of Chaplygin's sleigh).
 
 # %%
 sleigh = an.load("chaplygin-sleigh")

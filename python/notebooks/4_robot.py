@@ -41,7 +41,7 @@ robot.check()
 # %% [markdown]
 # ## The linear model
 #
-# Upright and at rest the motors are the inputs u. One eigenvalue is positive: the robot falls within a fifth of a second or so.
+# The robot is upright and at rest; its motors are the inputs u. One eigenvalue is positive: the robot falls within about a fifth of a second.
 
 # %%
 linear = robot.linearize()

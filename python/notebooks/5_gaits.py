@@ -58,7 +58,8 @@ print(f"worst angle at the same rhythm: {worst:.3f} m")
 
 # %% [markdown]
 # **The surprise.** Strength does not matter as much as timing: at the best rhythm the same swing and the same steering move the board far or
-# hardly at all, and only the angle between the two decides. And none of it is pushing: with the trucks held straight the board turns to and fro in its place.
+# hardly at all, and only the angle between the two decides. The rider never pushes the board: with the trucks held straight it only turns to and
+# fro in its place.
 
 # %%
 straight = board.with_(A2=0).simulate(to=20, every=1, initial={**rest, "ph": "1e-6"}, error_estimate=False)

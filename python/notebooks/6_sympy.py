@@ -1,7 +1,7 @@
 # %% [markdown]
 # # 6. From SymPy and back
 #
-# A model that is written for `sympy.physics.mechanics` comes in as it is. Anholon takes the *mechanics* from it (bodies, velocities, loads, constraints),
+# A model that is written for `sympy.physics.mechanics` is imported as it is. Anholon takes the *mechanics* from it (bodies, velocities, loads, constraints),
 # not the equations, and derives these anew. Afterwards the rates go back to SymPy as expressions. Here it is the rolling disc of SymPy's documentation.
 
 # %%
@@ -34,8 +34,8 @@ model = an.from_sympy(kane, values=values, initial={q2: 0.2, "q3'": 6})
 print(model.text)
 
 # %% [markdown]
-# SymPy's model knows only the velocity of the centre: its *place* is nowhere written, and the contact is at rest at each moment but is another point of
-# the disc at the next. The import gives the centre coordinates of its own, which follow its velocity by constraints.
+# SymPy's model has only the velocity of the centre, not its *position*: the point of contact is at rest at each moment, but it is another point of the
+# disc at the next moment. The import gives the centre coordinates of its own, and constraints equate their rates to the velocity.
 #
 # ## The same accelerations
 #
@@ -62,7 +62,7 @@ assert np.allclose(by_sympy, by_anholon, rtol=1e-12)
 # %% [markdown]
 # ## What it adds
 #
-# **The surprise.** SymPy's textbook answer for forces is to invent auxiliary speeds, derive everything once more and set them to zero. Here the force
+# **The surprise.** SymPy's way to such a force is to add auxiliary speeds, derive all equations once more and set these speeds to zero. Here the force
 # that holds the contact is a column of every run: a multiplier for each constraint.
 
 # %%
@@ -79,7 +79,7 @@ run.plot(*[column.name for column in run.columns if column.kind == "multipliers"
 # ## And back
 #
 # The equations in all coordinates are SymPy expressions with exact numbers: nothing is rounded on the way. They are linear in the accelerations and the multipliers;
-# this is the second one.
+# the cell shows the second equation.
 
 # %%
 formulas = model.dynamics(minimal=False).formulas.sympy()

@@ -16,7 +16,7 @@ print(f.inputs)
 f.states
 
 # %% [markdown]
-# The velocities are two independent ones, so the solver cannot leave the constraints, whatever it tries. The formulas of the rates are CasADi
+# The state has two independent velocities, any values of which satisfy the constraints, so the solver cannot violate them. The formulas of the rates are CasADi
 # expressions.
 
 # %%
@@ -51,8 +51,8 @@ step = ca.Function("step", [x, first, last], [z])
 # %% [markdown]
 # ## The problem
 #
-# From a straight line the car drives backward at 1 m/s. After eight seconds it is 8 m behind and all of it stands one metre to the left, straight again. The
-# controls are straight lines between 41 moments; their squares are to be as small as possible.
+# From a straight line the car drives backward at 1 m/s. After eight seconds the car is 8 m behind, and car and trailers stand one metre to the
+# left, in a straight line again. The controls are linear between 41 times; the problem minimizes their squares.
 
 # %%
 start = f.state(q={c.name: 0.0 for c in car.coordinates}, qdot={"x'": -1.0})

@@ -16,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="session")
 def program() -> Callable[..., str]:
-    """Runs the command line and returns what it prints."""
+    """Returns a function that runs the program with options and returns its output."""
     path = os.environ.get("ANHOLON_PROGRAM", str(ROOT / "build" / "anholon"))
 
     def run(*words: str) -> str:
@@ -33,9 +33,10 @@ def disc() -> an.Model:
 
 @pytest.fixture
 def ctrl_c() -> Callable[..., Callable[[], float]]:
-    """Sends SIGINT to the main thread after some seconds.
+    """Returns a function that sends SIGINT to the main thread after some seconds.
 
-    What is returned gives the seconds that the process has worked since. A busy machine does not lengthen them.
+    That function returns another one, which returns the processor time of the process since the signal, in seconds. Other work of
+    the machine does not add to it.
     """
 
     def press_later(after: float) -> Callable[[], float]:

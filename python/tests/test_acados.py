@@ -1,6 +1,8 @@
-"""What acados's templates call of the C code of ``Dynamics.c_code``: its names, shapes and sparsities, and the variational equations that are generated on it.
+"""The C code of ``Dynamics.c_code`` has the functions that templates of acados call: names, shapes, sparsities. CasADi generates
+variational equations that call it.
 
-acados itself is not needed: its explicit integrators call functions that CasADi generates of the rates, of their forward sensitivities and of their adjoint.
+acados itself is not needed: its explicit integrators call functions that CasADi generates for the rates, their forward sensitivities
+and their adjoint.
 """
 
 import ctypes
@@ -22,7 +24,7 @@ def f() -> an.Dynamics:
 
 
 def sparsity(library: Any, function: str, of: str, k: int) -> tuple[list[int], list[int]]:
-    """(rows and columns, row of each number in the order of the columns) as CasADi's interface tells them."""
+    """Returns ([rows, columns], row of each entry, column by column) from a sparsity function of CasADi's interface."""
     call = getattr(library, f"{function}_sparsity_{of}")
     call.restype = ctypes.POINTER(ctypes.c_longlong)
     told = call(ctypes.c_longlong(k))
@@ -42,7 +44,7 @@ def test_names_and_sizes_that_a_template_reads(f: an.Dynamics) -> None:
     assert sparsity(library, "car", "out", 0)[0] == [len(f.states), 1]
     work = [ctypes.c_longlong(-1) for _ in range(4)]
     assert library.car_work(*(ctypes.byref(number) for number in work)) == 0
-    assert [number.value for number in work] == [4, 2, 0, 0]  # acados allocates so much
+    assert [number.value for number in work] == [4, 2, 0, 0]  # the sizes of the arrays that acados allocates
     names = [library.jac_car_n_out(), library.jac_car_n_in()]
     assert names == [8, 6]
 
@@ -59,7 +61,7 @@ def test_the_sparsity_holds_every_entry_of_the_jacobian(f: an.Dynamics) -> None:
 
 
 def test_the_variational_equations_of_an_explicit_integrator(f: an.Dynamics, tmp_path: pathlib.Path) -> None:
-    """As acados generates them: sensitivities forward and adjoint, as C code that calls ours."""
+    """Forward and adjoint sensitivities are generated as acados does, as C code that calls the code of Anholon."""
     source = f.c_code("car")
     rate = ca.external("car", compile_c(source))
     n, inputs = len(f.states), len(f.inputs)

@@ -1,4 +1,4 @@
-"""compare, evaluate, linearize and stability: the numbers and verdicts of the command line."""
+"""compare, evaluate, linearize and stability have the numbers and verdicts of the command line."""
 
 import copy
 import json
@@ -80,7 +80,7 @@ def test_a_misprint_is_found_and_shown(disc: an.Model) -> None:
 
 
 def same_digits(number: Any, text: str, digits: int) -> bool:
-    """Whether a number of mpmath is the one that a text with so many digits tells; both were rounded to that many."""
+    """True if a number of mpmath equals that of a text, up to the rounding of both to `digits` digits."""
     import mpmath
 
     return bool(abs(number - mpmath.mpf(text)) <= abs(number) * mpmath.mpf(10) ** -digits)
@@ -266,8 +266,8 @@ def test_ctrl_c_ends_what_keeps_nothing(ctrl_c: CtrlC, name: str, call: Callable
         works_since = ctrl_c(after=0.05)
         call(model)
     assert works_since() < 0.1
-    assert _core.running() == 0  # the computation has ended, too
-    assert model.coordinates[0].name == "x"  # the model is as it was
+    assert _core.running() == 0  # the computation has ended
+    assert model.coordinates[0].name == "x"  # the model is unchanged
 
 
 BATCHES: dict[str, Callable[[an.Dynamics], Callable[[], object]]] = {
@@ -281,7 +281,7 @@ BATCHES: dict[str, Callable[[an.Dynamics], Callable[[], object]]] = {
 def test_ctrl_c_ends_a_batch_of_dynamics(ctrl_c: CtrlC, what: str) -> None:
     f = an.load("whipple").dynamics()
     call = BATCHES[what](f)
-    call()  # makes the formulas and their code
+    call()  # derives the formulas and compiles them, which is not measured
     begun, worked = time.perf_counter(), time.process_time()
     call()
     lasts, works = time.perf_counter() - begun, time.process_time() - worked
@@ -294,21 +294,21 @@ def test_ctrl_c_ends_a_batch_of_dynamics(ctrl_c: CtrlC, what: str) -> None:
 
 
 def test_ctrl_c_ends_a_proof_of_the_command() -> None:
-    """It says which forms were compared until then, and calls nothing equal."""
+    """The message names the forms that were compared until then, and the exit status is 1."""
     for delay in (0.1, 0.2, 0.4, 0.8, 1.6, 3.2):
         process = subprocess.Popen([os.environ["ANHOLON_PROGRAM"], "prove", "snake"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(delay)
         process.send_signal(signal.SIGINT)
         shown, said = process.communicate(timeout=60)
         if process.returncode == -signal.SIGINT:
-            continue  # it came before the proof began
+            continue  # the signal came before the proof began
         assert process.returncode == 1 and shown == ""
         told = re.match(r"stopped \(interrupted\): (\d+) of (\d+) forms were compared with Routh's equations\n((?:.+: .+\n)*)$", said)
         assert told and int(told[1]) < int(told[2]), said
         lists = {what: names.split(", ") for what, names in (line.split(": ") for line in told[3].splitlines())}
         assert lists.keys() <= {"proved", "compared, but the tangents of the constraints are not shown"}
         assert sum(len(names) for names in lists.values()) == int(told[1])
-        # These have no multipliers, and rest on the tangents, which are shown last.
+        # These forms have no multipliers. Their proof needs the tangents of the constraints, which are proved last.
         assert not {"appell-reduced", "chaplygin", "maggi"} & set(lists.get("proved", ()))
         if lists:
             return

@@ -1,4 +1,4 @@
-"""What a run hands out as arrays: views, their lifetime, their names and units, and the memory they take."""
+"""The arrays of a run: views, their lifetime, names and units, and their memory."""
 
 import gc
 import subprocess
@@ -8,7 +8,7 @@ import anholon as an
 import numpy as np
 import pytest
 
-# Many bodies, events, outputs, a servo constraint of order 3, units.
+# Together the models have many bodies, events, outputs, a servo constraint of order 3, and units.
 MODELS = ["disc", "whipple", "snakeboard", "luo-zhao-example-2", "tether-by-servo", "roller-racer"]
 
 
@@ -72,7 +72,7 @@ def test_names_and_units_go_along() -> None:
     assert data["x'"].attrs == {"units": "m/s", "long_name": "rate of x"} and data["t"].attrs["units"] == "s"
 
 
-# Peak of the memory that the process held, kB, which only a process of its own tells for one computation.
+# Prints the peak memory of one run, which has a process of its own, since the peak belongs to the whole process.
 MEMORY = """
 import resource, sys
 import anholon as an, numpy as np
@@ -93,7 +93,7 @@ print(table.size, (peak() - before) * 1024 / table.nbytes)
 
 
 def memory(to: str) -> tuple[int, float]:
-    """How many numbers a run of the disc to that time has, and the greatest memory in relation to them."""
+    """Returns the count of the numbers of a run of the disc to a time, and the peak memory over their size."""
     done = subprocess.run([sys.executable, "-c", MEMORY, to], capture_output=True, text=True, check=True)
     size, relative = done.stdout.split()
     return int(size), float(relative)
@@ -102,5 +102,5 @@ def memory(to: str) -> tuple[int, float]:
 def test_ten_million_numbers_are_held_once() -> None:
     size, relative = memory("440")
     assert size > 10_000_000
-    # One of 23 columns is moved at a time; the steps and the interpreter take some more.
+    # Columns are moved one at a time, of 23; steps and interpreter need some more memory.
     assert relative < 1.25

@@ -1,4 +1,4 @@
-"""Models written in Python: the equations and the bits of the files of the zoo; mistakes at their lines."""
+"""Models written in Python have the equations and the bits of the files of the zoo; errors name the lines of mistakes."""
 
 import pathlib
 import re
@@ -328,7 +328,7 @@ def test_a_call_with_other_things_is_refused() -> None:
 
 
 def number(term: Any) -> float:
-    """The value of a formula at x = 3, y = 5, by the library."""
+    """Returns the value of a formula at x = 3, y = 5, computed by the library."""
     b, x, y = bead()
     b.initial({x: 3, y: 5, x.dt: 2, y.dt: 0})
     b.monitor("value", term)

@@ -165,7 +165,7 @@ def test_a_folder_keeps_the_table(model: an.Model, tmp_path: pathlib.Path) -> No
     assert again.progress().parts == 3
     with pytest.raises(an.ModelError, match="table of cases"):
         model.sweep(cases={**COLUMNS, "k": [0.1, 2.5, 2e-3]}, to=1, out=tmp_path / "falls")
-    # A case, and a missing part, are computed from the folder alone.
+    # The folder is enough to compute a case and a missing part.
     assert an.open_sweep(tmp_path / "falls").run(1)["x"][-1] == folder["x"][1]
     part = tmp_path / "falls" / "part-000001.parquet"
     before = part.read_bytes()

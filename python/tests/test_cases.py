@@ -1,4 +1,4 @@
-"""Scenarios [case.NAME] of a file: given when it is loaded, later, in another process, in sweeps."""
+"""Scenarios [case.NAME] of a file, applied when the file is loaded, later, in another process and in sweeps."""
 
 import json
 import pathlib
@@ -38,7 +38,7 @@ def test_cases_of_a_file(tmp_path: pathlib.Path) -> None:
     for same in (an.loads(CASES, case=["moon", "long"]), plain.with_(case="moon").with_(case="long"), moon.with_(case="long"), pickle.loads(pickle.dumps(both))):
         assert same.parameters == both.parameters == {"l": 4, "g": 1.62}
         assert np.array_equal(same.simulate()["theta"], both.simulate()["theta"])
-    # A value that is given wins over that of a case.
+    # A value that is given overrides that of a case.
     assert an.load(path, case="moon", set={"g": 3}).parameters["g"] == 3
     with pytest.raises(an.ModelError, match="moon"):
         an.load(path, case="mon")
@@ -77,7 +77,7 @@ def collected(program: Callable[..., str], folder: pathlib.Path) -> str:
 def test_a_folder_over_cases_has_the_bytes_of_the_command_line(path: pathlib.Path, tmp_path: pathlib.Path, program: Callable[..., str]) -> None:
     expected = program("sweep", str(path), *WORDS, "--quiet")
     assert expected.count("\n") == 19 and expected.startswith("case,case_name,theta(0),theta'(0),outcome,t,theta,theta'\n")
-    # Parts that hold cases of two scenarios, one part, a part for each case.
+    # Parts with cases of two scenarios, one part for all, and a part for each case.
     for chunk in (4, 1000, 1):
         folder = tmp_path / f"of-{chunk}"
         swept = an.load(path).sweep(VARY, out=folder, chunk=chunk)
@@ -111,7 +111,7 @@ def test_a_sweep_over_cases_in_memory(path: pathlib.Path, tmp_path: pathlib.Path
     assert np.array_equal(memory["theta"][chosen], moon["theta"]) and not np.array_equal(memory["theta"][6:12], moon["theta"])
     alone = model.sweep({"case": model.cases}, columns=["theta"])
     assert alone.cases == 4 and "4 of 4 cases finished; varied: case" in repr(alone) and "case" in alone._repr_html_()
-    # A scenario has an end of its own, and so has a case of it.
+    # The case of a scenario ends at the end time of the scenario.
     assert alone.t.tolist() == [1, 1, 3, 1]
 
 
@@ -155,7 +155,7 @@ def test_a_folder_over_scenarios_goes_on(path: pathlib.Path, tmp_path: pathlib.P
     for word, vary in (("vary case is 'moon,long,thick' there and 'moon,long' here", ["moon", "long"]), ("'moon,thick,long' here", ["moon", "thick", "long"])):
         with pytest.raises(an.ModelError, match=word):
             model.sweep({**VARY, "case": vary}, out=tmp_path / "once")
-    # The places of the names do not matter: scenarios vary slowest.
+    # Scenarios vary slowest, whatever the order of the names.
     assert model.sweep({"case": VARY["case"], "theta": VARY["theta"], "theta'": VARY["theta'"]}, out=tmp_path / "once").complete
 
 
@@ -184,7 +184,7 @@ def test_mistakes_in_a_sweep_over_scenarios(path: pathlib.Path, tmp_path: pathli
     with pytest.raises(an.ModelError, match="there is no case 'heavy'"):
         disc.sweep({"case": ["heavy"]}, to=1)
     assert model.sweep({"case": ["moon", "falls"]}, columns=["theta"]).cases == 2
-    # Several scenarios are no grid; one scenario is.
+    # Several scenarios do not make a grid; one scenario does.
     with pytest.raises(an.ModelError, match=r'no grid.*\n.*with_\(case="NAME"\)'):
         model.sweep({"case": ["moon", "long"], "theta": [0.1, 0.2]}, refine=1, out=tmp_path / "none")
     assert not (tmp_path / "none").exists()
@@ -203,7 +203,7 @@ def test_a_folder_of_a_file_with_a_base_tells_the_base(path: pathlib.Path, tmp_p
     top.write_text('base = "pendulum.toml"\n[case.short]\nparameters.l = 0.5\n')
     swept = an.load(top).sweep({"case": ["moon", "short"], "theta": [0.1, 0.2]}, out=tmp_path / "f", chunk=1)
     assert "base file 1" in json.loads((tmp_path / "f" / "_sweep.json").read_text())["asked"]
-    # From any folder: the model is read where it lies.
+    # The model is found from any working folder.
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
     (tmp_path / "f" / "part-000003.parquet").unlink()
@@ -252,7 +252,7 @@ contact.floor.restitution = 0
 @pytest.mark.parametrize(
     ("text", "vary", "words"),
     [
-        # The start of the model contradicts its constraint, those of some cases do not.
+        # The initial values of the model contradict its constraint; those of some cases do not.
         (BEAD, {"case": "wide,free", "y": [3, 2, "1/2"]}, ["case=wide,free", "y=3,2,1/2"]),
         (BALL, {"case": "rough,soft", "x'": [1, 2]}, ["case=rough,soft", "x'=1,2"]),
     ],

@@ -71,7 +71,7 @@ def test_a_mode_is_that_of_the_command_line(program: Callable[..., str]) -> None
     told = json.loads(program("linearize", "bead-in-hoop", "--mode", "hoop=slips", "--qdot", "x=0", "--json"))
     linear = hoop.linearize(initial={"x'": 0})
     assert [[z.real, z.imag] for z in linear.eigenvalues] == told["eigenvalues"]
-    # A mode has words of its own, and one that does not change.
+    # Comparisons use the equations of the mode, and copies of the model keep the mode.
     assert hoop.compare(["z: m*z'' = -m*g - lambda.hoop*z/norm(P)"])["z"].verdict == "true"
     assert hoop.compare(["z: m*z'' = -m*g + lambda.hoop*z/norm(P)"])["z"].verdict == "false"
     again = pickle.loads(pickle.dumps(hoop))
@@ -125,7 +125,7 @@ def test_a_sweep_in_a_mode(name: str, mode: str, vary: tuple[str, list[float]], 
     assert program("sweep", "collect", str(tmp_path / "ours"), "--quiet") == expected == program("sweep", "collect", str(tmp_path / "theirs"), "--quiet")
     for column in memory:
         assert np.array_equal(memory[column], folder[column]), column
-    # The mode belongs to the request, and each case has it when it moves again.
+    # The folder keeps the mode with the request, and a case that is simulated again has it.
     for place_of in ("ours", "theirs"):
         assert json.loads((tmp_path / place_of / "_sweep.json").read_text())["asked"]["mode"] == mode
         again = an.open_sweep(tmp_path / place_of)
@@ -135,7 +135,7 @@ def test_a_sweep_in_a_mode(name: str, mode: str, vary: tuple[str, list[float]], 
     assert an.open_sweep(tmp_path / "ours").fill().complete and program("sweep", "collect", str(tmp_path / "ours"), "--quiet") == expected
     with pytest.raises(an.ModelError, match=f"holds another sweep: mode is '{mode}' there and not given here"):
         model.sweep({varied: values}, to=1, out=tmp_path / "ours")
-    # The motion with its changes is another one.
+    # Without the mode the motion is another one, as its contacts change.
     assert program("sweep", place, *words) != expected
 
 

@@ -1,4 +1,4 @@
-"""Every public name is explained: what it is, shapes, what it raises, and an example that is run."""
+"""Every public name has a docstring, which tells shapes and exceptions, and an example that is run."""
 
 import ast
 import inspect
@@ -15,12 +15,12 @@ PACKAGE = pathlib.Path(an.__file__).parent
 
 
 def definitions() -> Iterator[tuple[str, ast.AST, str]]:
-    """(name, definition, class) of the public classes, functions and members that are written in Python."""
+    """Yields (name, definition, class) of the public classes, functions and members that are written in Python."""
     parts = [node for path in sorted(PACKAGE.glob("*.py")) for node in ast.parse(path.read_text(encoding="utf-8")).body]
     classes = {node.name: node for node in parts if isinstance(node, ast.ClassDef)}
 
     def members(node: ast.ClassDef) -> Iterator[ast.FunctionDef]:
-        """Those of the class, then those of the classes of the package that it extends."""
+        """Yields the methods of the class, then those of the private classes of the package that it extends."""
         yield from (member for member in node.body if isinstance(member, ast.FunctionDef))
         for base in node.bases:
             if isinstance(base, ast.Name) and base.id in classes and base.id not in an.__all__:
@@ -43,7 +43,7 @@ def doc(node: Any) -> str:
 
 
 def examples() -> str:
-    """What is run as an example: docstrings (python.examples), documents (test_documents), notebooks (test_notebooks)."""
+    """Returns the code of all examples that are run: docstrings (python.examples), documents (test_documents), notebooks."""
     lines = [line for path in PACKAGE.glob("*.py") for line in re.findall(r"^\s*(?:>>>|\.\.\.) (.*)$", path.read_text(encoding="utf-8"), re.M)]
     for document in ("README.md", "doc/python.md"):
         lines += re.findall(r"^```python\n(.*?)^```", (ROOT / document).read_text(encoding="utf-8"), re.M | re.S)
@@ -79,7 +79,7 @@ def test_a_member_is_used_in_an_example(name: str) -> None:
 
 
 def raised(node: Any) -> set[str]:
-    """The classes that a body raises itself, but for those that come with the language's protocols."""
+    """Returns the names of the exceptions that a body raises itself, without Interrupted."""
     names = set()
     for part in ast.walk(node):
         if isinstance(part, ast.Raise) and isinstance(part.exc, ast.Call) and isinstance(part.exc.func, ast.Name):

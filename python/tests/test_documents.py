@@ -1,4 +1,4 @@
-"""The examples of README.md and of the pages of doc/, run in order; the names of the package on its pages."""
+"""The examples of README.md and of the pages of doc/ run in order, and the pages name all of the package."""
 
 import inspect
 import pathlib
@@ -25,14 +25,14 @@ def test_examples_run(document: str, tmp_path: pathlib.Path, monkeypatch: pytest
 
 
 def words(text: str) -> set[str]:
-    """The names that stand in code on a page: in blocks of Python and between backticks."""
+    """Returns the names in the code of a page: in blocks of Python and between backticks."""
     blocks = re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)
     spans = re.findall(r"`([^`\n]+)`", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S))
     return set(re.findall(r"\w+", "\n".join(blocks + spans)))
 
 
 def names() -> list[str]:
-    """The public names of the package, and the members of its classes that are written in Python."""
+    """Returns the public names of the package, and the members of its classes that are written in Python."""
     found = []
     for name in an.__all__:
         found.append(name)

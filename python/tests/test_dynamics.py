@@ -1,4 +1,4 @@
-"""The equations as a function: the accelerations of the motion, alone and in batches, for other integrators."""
+"""The equations as a function have the accelerations of the motion, for one state and for batches, and serve other integrators."""
 
 import os
 import threading
@@ -38,7 +38,7 @@ def test_independent_velocities_give_the_same_motion(name: str) -> None:
     for c in model.coordinates:
         assert motion[c.name] == pytest.approx(run[c.name][0], rel=1e-9, abs=1e-9)
         assert motion[c.name + "'"] == pytest.approx(run[c.name + "'"][0], rel=1e-9, abs=1e-9)
-    # Some parameter of another value makes another motion.
+    # At least one parameter changes the rates.
     changes: list[dict[str, Any]] = [{p: 3} for p in model.parameters]
     others = [model.with_(**change).dynamics()(0.5, f.start) for change in changes]
     assert any(not np.allclose(other, f(0.5, f.start), rtol=1e-6) for other in others)
@@ -65,7 +65,7 @@ def test_smooth_forces_leave_velocities_independent(force: str) -> None:
     motion, slopes, t = f.motion(x, 0.25), f(0.25, x), 0.25
     state = whole.state(t, q={n: motion[n] for n in names}, qdot={n + "'": motion[n + "'"] for n in names})
     expected = dict(zip((s.name for s in whole.states), whole(t, state), strict=True))
-    # A velocity is linear in the independent ones and trigonometric in th: differences of order 4 of its rate along the motion.
+    # Differences of order 4 give the rate of each velocity, which is linear in the independent ones and trigonometric in th.
     h = 1e-3
     for n in names:
         up, down, up2, down2 = (f.motion(x + k * h * slopes, t)[n + "'"] for k in (1, -1, 2, -2))
@@ -73,7 +73,7 @@ def test_smooth_forces_leave_velocities_independent(force: str) -> None:
 
 
 def by_differences(f: an.Dynamics, t: float, x: Any, u: Any, p: Any, directions: Any) -> Any:
-    """The derivatives of the rates along directions of (x, u, p): differences of order 4 in 40 digits, from the formulas."""
+    """Returns the derivatives of the rates along directions of (x, u, p) by differences of order 4 of the formulas in 40 digits."""
     mpmath = pytest.importorskip("mpmath")
     with mpmath.workdps(40):
         h = mpmath.mpf(10) ** -9
@@ -103,12 +103,12 @@ def test_derivatives_are_exact(name: str, minimal: bool) -> None:
     x = f.start + 0.01 * np.cos(np.arange(len(f.start)))
     u, p = f.u0 + 0.3, f.p0[:] * (1 if name == "whipple" else 1.01)
     count = len(x) + len(u) + len(p)
-    # The bicycle's formulas are long: two directions, in which every derivative takes part.
+    # The formulas of the bicycle are long, so two directions are enough; every derivative contributes to both.
     few = name == "whipple" and not os.environ.get("ANHOLON_LONG")
     directions = np.cos(np.outer(np.arange(count) + 1, [1, 2])) if few else np.eye(count)
     expected = by_differences(f, 0.25, x, u, p, directions)
     found = np.hstack([f.jac(0.25, x, u, p, by=by) for by in "xup"]) @ directions
-    # Numbers of formulas are rounded to doubles on the one side.
+    # jac() computes with numbers that are rounded to doubles, by_differences() with exact ones.
     assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()
     v, w = np.cos(np.arange(len(x))), np.sin(np.arange(len(x)))
     np.testing.assert_array_equal(f.jvp(0.25, x, v, u, p), f.jac(0.25, x, u, p) @ v)
@@ -131,7 +131,7 @@ def test_inputs_are_arguments(name: str) -> None:
         assert not np.allclose(f(0.4, x, by_formulas + 1), closed(0.4, x), rtol=1e-3)
         named = dict(zip(f.inputs, by_formulas, strict=True))
         np.testing.assert_array_equal(f(0.4, x, named), f(0.4, x, by_formulas))
-        # One set of inputs for each state has the bits of a call of its own.
+        # A batch with a set of inputs for each state has the bits of single calls.
         many = np.tile(x[:, None], 300)
         u = by_formulas[:, None] + np.linspace(-1, 1, 300)
         rates = f(0.4, many, u)
@@ -196,7 +196,7 @@ def test_the_equations_of_motion_as_arrays() -> None:
     free = np.linalg.svd(phi)[2][len(phi) :]  # directions that the constraints leave free
     np.testing.assert_allclose(free @ (mass @ acceleration + bias), 0, atol=1e-13)
     assert np.abs(free @ bias).max() > 0.1
-    # The constraints keep their value to second order.
+    # The constraints change by terms of second order only.
     dt = 1e-6
     later = x + dt * f(0, x)
     np.testing.assert_allclose(f.constraint_jacobian(0, later) @ later[n:], phi @ x[n:], atol=1e-10)
@@ -243,7 +243,7 @@ def test_batches_have_the_same_bits() -> None:
 
 
 def test_small_pivots_are_no_trouble() -> None:
-    """Rods along the axes, where pivots that were chosen at the start vanish: the constraints hold for the accelerations."""
+    """With rods along the axes, pivots that were chosen at the start vanish. The accelerations satisfy the constraints there, too."""
     f = an.load("double-pendulum-cartesian").dynamics(minimal=False)
     tiny = 1e-9
     directions = [(1, tiny), (tiny, -1), (-1, tiny), (tiny, 1), (1, 0), (0, -1)]
@@ -283,7 +283,7 @@ def test_constraints_of_higher_order_have_rates_too(name: str) -> None:
     x = np.array([run[n] for n in names])
     for row, t in enumerate(run.t):
         rates = f(t, x[:, row])
-        # The run has all derivatives that the equations are solved for.
+        # The run has columns for all derivatives for which the equations are solved.
         np.testing.assert_allclose(rates, [run[n + "'"][row] for n in names], rtol=1e-12, atol=1e-13)
     many = f.start[:, None] * (1 + 0.001 * np.random.default_rng(2).standard_normal((len(names), 100)))
     together = f(f.t0, many)
@@ -293,7 +293,7 @@ def test_constraints_of_higher_order_have_rates_too(name: str) -> None:
     z = {n: there.pop(n) for n in model.states}
     q, qdot = ({n: v for n, v in there.items() if n.endswith("'") == dashed} for dashed in (False, True))
     np.testing.assert_array_equal(f.state(q=q, qdot=qdot, z=z), x[:, -1])
-    # Each of them may be left out.
+    # Each argument may be left out.
     np.testing.assert_array_equal(f.state(), f.state(q={}, qdot={}, z={}))
     np.testing.assert_array_equal(f.state(q=q), f.state(q=q, qdot={}))
     np.testing.assert_array_equal(f.state(qdot=qdot), f.state(q={}, qdot=qdot))
@@ -302,7 +302,7 @@ def test_constraints_of_higher_order_have_rates_too(name: str) -> None:
 
 
 def test_a_solution_stays_on_its_branch() -> None:
-    """An acceleration of given magnitude has two directions: the one at the start is followed, and others are not taken."""
+    """An acceleration of given magnitude has several directions. The function follows the one at the start."""
     model = an.load("constant-acceleration")
     f = model.dynamics()
     assert not f.linear
@@ -315,7 +315,7 @@ def test_a_solution_stays_on_its_branch() -> None:
             formula()
     with pytest.raises(an.ModelError, match="not linear in what they are solved for"):
         f.formulas.numpy()(0, f.start)
-    # The straight line from the start may cross a state that has no solution.
+    # Accelerations are NaN if the straight line from the start reaches a state without a solution.
     assert np.isnan(f(0, np.full(len(f.start), np.nan))[3:]).all()
 
 
@@ -384,7 +384,7 @@ def test_batches_of_derivatives_and_outputs_have_the_bits_of_one_state(minimal: 
 
 @pytest.mark.parametrize("name", ["two-wheeled-pendulum", "rattleback"])
 def test_machine_code_of_derivatives_has_the_bits_of_tables(name: str) -> None:
-    """Machine code is made after some thousand states."""
+    """After some thousand states machine code replaces the tables; the derivatives keep their bits."""
     f = an.load(name).dynamics(inputs=False)
     x = batch_of(f, 12_000)
     first = [f.jac(0.1, x[:, k]) for k in (0, 5, 11_999)]
@@ -392,7 +392,7 @@ def test_machine_code_of_derivatives_has_the_bits_of_tables(name: str) -> None:
     for k, before in zip((0, 5, 11_999), first, strict=True):
         np.testing.assert_array_equal(many[..., k], before)
         np.testing.assert_array_equal(f.jac(0.1, x[:, k]), before)
-    # Central differences know about ten digits.
+    # Central differences have about ten digits.
     scale = 1e-5 * (1 + abs(x[:, 5]))
     step = np.diag(scale)
     differences = np.column_stack([(f(0.1, x[:, 5] + d) - f(0.1, x[:, 5] - d)) / (2 * scale[i]) for i, d in enumerate(step)])
@@ -463,7 +463,7 @@ def test_a_function_tells_why_velocities_are_not_independent(name: str, obstacle
 
 
 def test_states_that_are_not_numbers_have_rates_that_are_none() -> None:
-    # The equations have no solution there, and the reference names the formula of the fault.
+    # The equations have no solution at such states, and the reference expansion names a formula that has no value.
     model = an.loads(
         """
         coordinates = ["x", "y", "th"]

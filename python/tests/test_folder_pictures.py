@@ -1,4 +1,4 @@
-"""Sweeps in folders as pictures: maps, curves over what varies and over t, and folders with missing parts."""
+"""Figures of sweeps in folders: maps, curves over the names that vary and over t, and folders with missing parts."""
 
 import os
 import pathlib
@@ -10,7 +10,7 @@ import pytest
 
 @pytest.fixture
 def grid(tmp_path: pathlib.Path, disc: an.Model) -> an.SweepFolder:
-    """A map of 4 x 5 cases, a part for each value of phi'."""
+    """Computes a sweep of 4 x 5 cases with a part for each value of phi'."""
     return disc.sweep({"phi'": an.grid(2, 5, 4), "theta": an.grid("0.8", "1.2", 5)}, to=1, columns=["theta"], out=tmp_path / "grid", chunk=5)
 
 
@@ -26,7 +26,7 @@ def test_a_map_with_missing_parts_has_the_whole_grid(grid: an.SweepFolder) -> No
         os.remove(pathlib.Path(grid.path) / f"part-{part:06}.parquet")
     svg = grid.figure("theta").svg
     assert "1 of 4 parts" in svg
-    # Ticks of the whole grid, and fewer cells than the whole one has.
+    # The axes show the whole grid, and the map has fewer cells than that of the complete folder.
     for tick in ("2", "3", "4", "5"):
         assert f">{tick}<" in svg or f">{tick}.0<" in svg
     assert patches(svg) < patches(whole)

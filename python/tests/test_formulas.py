@@ -1,4 +1,4 @@
-"""The rates in the words of other libraries: all agree with the compiled function."""
+"""The rates as formulas of other libraries agree with the compiled function."""
 
 import os
 import subprocess
@@ -9,12 +9,12 @@ import anholon as an
 import numpy as np
 import pytest
 
-# Explicit rates, a linear system, inputs, formulas with cases, roots.
+# The models have explicit rates, a linear system, inputs, formulas with cases, and roots.
 MODELS = [("disc", True), ("disc", False), ("trailers", True), ("snake", False), ("fourbar", False), ("snakeboard", True),
           ("tether-by-servo", True), ("third-order-linear", False)]  # fmt: skip
 
 
-# XLA takes up to half a minute to compile long formulas: ANHOLON_LONG=1 does all.
+# XLA takes up to half a minute to compile long formulas, so only ANHOLON_LONG=1 tests all models.
 IN_JAX = MODELS if os.environ.get("ANHOLON_LONG") else [("disc", True), ("fourbar", False), ("snakeboard", True)]
 
 
@@ -61,7 +61,7 @@ def test_a_reverse_derivative_in_jax_keeps_states_alone() -> None:
     def end(p: Any) -> Any:
         return jax.lax.scan(lambda x, _: (x + 0.01 * g(0.3, x, u, p)[0], None), jax.numpy.asarray(x), None, length=5)[0].sum()
 
-    # A loop whose formulas are all kept has hundreds of results, and is compiled for minutes.
+    # A loop that stores the values of all formulas has hundreds of results, and XLA compiles it for minutes.
     loops = [e for e in jax.make_jaxpr(jax.grad(end))(p).eqns if e.primitive.name == "scan"]
     assert len(loops) == 2
     assert all(len(e.outvars) < 10 for e in loops)
@@ -82,7 +82,7 @@ def test_casadi(name: str, minimal: bool) -> None:
             assert block.shape == expected.shape
             np.testing.assert_allclose(np.array(block.full()).reshape(expected.shape), expected, rtol=1e-10, atol=1e-10 * max(1, np.abs(expected).max(initial=0)))
         np.testing.assert_allclose(np.array(blocks[3].full()).reshape(-1), f.jac(0.3, x, u, p, of="y").reshape(-1), rtol=1e-10, atol=1e-12)
-    # Of CasADi's own expressions there are second derivatives, too.
+    # CasADi's own expressions have second derivatives, too.
     hessian = f.formulas.casadi().factory("h", ["t", "x", "u", "p", "lam:dx"], ["hess:gamma:x:x"], {"gamma": ["dx"]})
     assert hessian.size_out(0) == (len(x), len(x))
 
@@ -101,7 +101,7 @@ def test_sympy(name: str, minimal: bool) -> None:
 
 
 def test_c_stands_by_itself() -> None:
-    """A file of its own, strict C99, whose rates have almost the digits of the compiled function."""
+    """The C file is strict C99 and needs no other file. Its rates agree with the compiled function in almost all digits."""
     import ctypes
 
     from anholon.formulas import compile_c
@@ -130,7 +130,7 @@ initial = {t = 0.7, x = 0.2, th = 0.3, "x'" = 0.4, "th'" = 0.6}
 
 
 def test_all_that_c_computes_is_read() -> None:
-    """Of constant factors that move outwards, and of a matrix in steps, for whose elimination there is nothing to do."""
+    """The C code has no unused values: neither for constant factors that are moved out, nor for a matrix that needs no elimination."""
     from anholon.formulas import compile_c
 
     for model in (an.load("rocket"), an.loads(AFFINE)):
@@ -139,7 +139,7 @@ def test_all_that_c_computes_is_read() -> None:
 
 
 def test_small_pivots_do_not_harm_generated_c() -> None:
-    """Rods along the axes, where pivots that suit the start vanish."""
+    """With rods along the axes, pivots that were chosen at the start vanish."""
     pytest.importorskip("casadi")
     f = an.load("double-pendulum-cartesian").dynamics(minimal=False)
     g = f.casadi()

@@ -1,4 +1,4 @@
-"""Inputs that are given act wherever the model holds them: in rates of states, outputs, reactions, events, other inputs."""
+"""Inputs that are given replace those of the model everywhere: in rates of states, outputs, reactions, events and other inputs."""
 
 from typing import Any
 
@@ -29,7 +29,7 @@ GIVEN = {"u": 10.0, "v": 7.0}
 
 
 def by_hand(u: float, v: float) -> tuple[float, dict[str, float]]:
-    """x'', and the outputs: m (x'' + 2 y'') = u + 2 v with y'' = 2 x''."""
+    """Returns x'' and the outputs by hand: m (x'' + 2 y'') = u + 2 v with y'' = 2 x''."""
     a = (u + 2 * v) / 10
     return a, {"thrust": u, "power": 0.5 * u, "push": 2 * a - u, "rate": u - 1 + v}
 

@@ -1,4 +1,4 @@
-"""Values as NumPy, pandas, polars and pyarrow have them: dates, single precision, labels, arrays of no axes."""
+"""Values of NumPy, pandas, polars and pyarrow: dates, single precision, labels, arrays without axes."""
 
 from __future__ import annotations
 

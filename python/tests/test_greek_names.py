@@ -1,4 +1,4 @@
-"""A Greek letter and its spelled name are one name, wherever Python takes or finds a name."""
+"""A Greek letter and its spelled name are the same name in all functions of the package."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What takes minutes: ``./dev long`` sets ANHOLON_LONG."""
+"""Tests that take minutes; ``./dev long`` sets ANHOLON_LONG for them."""
 
 import os
 import pathlib
@@ -24,7 +24,7 @@ def test_a_hundred_thousand_simulations_do_not_grow() -> None:
 
     def rounds(count: int) -> None:
         for k in range(count):
-            # A new initial value each time: systems that were prepared are forgotten, too.
+            # Each round has another initial value, so that prepared systems are dropped, too.
             run = model.simulate(to=0.01, initial={"th": k % 1000 / 1000}, error_estimate=False)
             assert run.ok and run.q.shape[0] == len(run)
 
@@ -34,7 +34,7 @@ def test_a_hundred_thousand_simulations_do_not_grow() -> None:
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 20_000, "kB"
 
 
-# ---- beside other compilers in one process ----
+# ---- other compilers in the same process ----
 
 OURS = """
 run = an.load("disc").simulate(to=2000, at=[2000], error_estimate=False).expect()
@@ -55,7 +55,7 @@ assert abs(ta.state[1] ** 2 / 2 - np.cos(ta.state[0]) + np.cos(1.0)) < 1e-13""",
 
 @pytest.fixture(scope="module")
 def fresh(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
-    """The interpreter of a fresh environment with NumPy."""
+    """Returns the interpreter of a fresh environment with NumPy."""
     folder = tmp_path_factory.mktemp("others") / "env"
     venv.create(folder, with_pip=True)
     python = folder / "bin" / "python"

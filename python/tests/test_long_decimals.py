@@ -1,4 +1,4 @@
-"""Numbers with many digits, as those that other programs print."""
+"""Numbers with many digits, as other programs print them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def test_products_of_sums_have_rates() -> None:
     f = model.dynamics(minimal=False)
     assert f(0, f.start)[2:] == pytest.approx(list(model.evaluate().accelerations.values()), rel=1e-13, abs=1e-15)
     x = np.array([-0.2, 0.7, 1.1, -0.4])
-    # By hand: the mass is that along the curve X = u^2 q, u = c + k p, and that of p.
+    # By hand: the mass matrix has a mass along the curve X = u^2 q, u = c + k p, and the mass of p.
     c, k = 1.03, 1.7654321
     u = c + k * x[0]
     jacobian = np.array([2 * u * k * x[1], u * u])

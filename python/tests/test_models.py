@@ -76,7 +76,7 @@ def test_equations_and_proofs(disc: an.Model) -> None:
     assert names["maggi"].applies and names["maggi"].source
     equations = disc.equations("maggi")
     assert equations.latex and "<math" in equations._repr_html_() and equations.json
-    # Lines that wrap within a box that scrolls; the table of `mathml` would be as wide as its longest line.
+    # Notebooks show lines that wrap, in a box that scrolls; the table of `mathml` would be as wide as its longest line.
     assert "overflow-x:auto" in equations._repr_html_() and "<mtable" not in equations._repr_html_()
     assert 'text-align:left' in equations.mathml
     proof = disc.prove("maggi")

@@ -1,4 +1,4 @@
-"""Runs and sweeps: arrays of what the library holds, the same numbers as the command line."""
+"""Runs and sweeps: their arrays are views of the memory of the library and have the numbers of the command line."""
 
 import ctypes
 import gc
@@ -188,14 +188,14 @@ def test_dense_output(disc: an.Model) -> None:
     rows = disc.simulate(to=3, every="0.07", error_estimate=False)
     run = disc.simulate(to=3, at=[3], error_estimate=False)
     at = rows.t
-    # Each derivative of a polynomial loses a digit or so.
+    # Each derivative of a polynomial loses about one digit.
     for order, (mark, within) in enumerate([("", 1e-12), ("'", 1e-11), ("''", 1e-9)]):
         values = run(at, order)
         for c in disc.coordinates:
             np.testing.assert_allclose(values[c.name], rows[c.name + mark], rtol=within, atol=within)
     assert np.isnan(run([-0.1, 3.1])["theta"]).all() and run(np.ones((2, 3)))["theta"].shape == (2, 3)
     assert disc.simulate(to=1, dense=True)._dense is not None
-    # A polynomial and its derivative belong together.
+    # run(t, 1) is the derivative of run(t).
     h = 1e-6
     slope = (run(1.0 + h)["theta"] - run(1.0 - h)["theta"]) / (2 * h)
     assert abs(slope - run(1.0, 1)["theta"]) < 1e-8
@@ -234,7 +234,7 @@ def test_other_libraries(disc: an.Model) -> None:
 
 
 def test_texts_of_values_and_times_are_those_of_the_command_line(disc: an.Model) -> None:
-    """A text is not taken for the list of its characters."""
+    """A text is not read as the list of its characters."""
     for of, values in (("10", [10]), (10, [10]), ("5, 6,7", [5, 6, 7]), ("1:7:3", [1, 4, 7]), ("max(2,3),4", [3, 4])):
         assert disc.sweep({"phi'": of}, to="0.01").varied["phi'"].tolist() == values
     written, made = (disc.sweep({"phi'": of}, cases=3, to="0.01").varied["phi'"] for of in ("normal(5,0.1)", an.normal(5, 0.1)))

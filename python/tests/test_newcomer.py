@@ -1,4 +1,4 @@
-"""Someone new, who has read the README alone: a rolling disc in ten lines, a table, a plot, an animation, and mistakes."""
+"""The first steps of a user who has read the README only: a rolling disc in ten lines, a table, a plot, an animation, and mistakes."""
 
 import math
 import pathlib
@@ -49,7 +49,7 @@ def test_a_table_a_plot_an_animation(run: an.Run, tmp_path: pathlib.Path) -> Non
     assert hasattr(run.animate(), "_repr_mimebundle_") or hasattr(run.animate(), "_repr_html_")
 
 
-# What a newcomer gets wrong, what is said, and what helps.
+# Mistakes of new users: (name, call, exception, texts of the message).
 MISTAKES: list[tuple[str, Callable[[an.Model, an.Run], object], type[Exception], tuple[str, ...]]] = [
     ("a name of a model", lambda disc, run: an.load("disk"), an.ModelError, ("did you mean the shipped model 'disc'",)),
     ("a name of a parameter", lambda disc, run: disc.with_(mass=2), an.ModelError, ("no parameter 'mass'", "the parameters are m, R, g")),
@@ -203,7 +203,7 @@ def test_a_velocity_across_the_blade_of_a_sleigh_that_is_turned_clashes(right_an
     for call in (lambda: turned.check(), lambda: turned.evaluate(), lambda: turned.simulate(to=1).expect()):
         with pytest.raises((an.MotionError, an.ModelError), match="x' = -0.5 .*clashes with constraint 'blade_edge'"):
             call()
-    # What is given now is stronger than the velocities of the file, which change least.
+    # Values that are given in the call are kept; the velocities of the file change, and as little as possible.
     found = {value.name: value.value for value in sleigh.check(initial={"th": right_angle}).initial}
     assert found["x'"] == pytest.approx(0, abs=1e-15) and abs(found["y'"]) < 1
     run = sleigh.simulate(to=1, initial={"th": right_angle, "x'": 0, "y'": 0.5}).expect()

@@ -1,4 +1,4 @@
-"""The notebooks run, each within 20 seconds of computing, and are what their texts give."""
+"""Each notebook runs within 20 seconds of processor time and is the one that its text gives."""
 
 import importlib.util
 import pathlib
@@ -35,7 +35,7 @@ def test_a_notebook_runs(text: pathlib.Path) -> None:
     notebook = nbformat.read(place, as_version=4)
     nbformat.validate(notebook)
     assert all(not cell.get("outputs") for cell in notebook.cells)
-    # Judged by the time of the processor: the machine may have other work.
+    # The limit is on processor time, as the machine may have other work.
     notebook.cells.append(nbformat.v4.new_code_cell("import time\ntime.process_time()"))
     nbclient.NotebookClient(notebook, timeout=600, kernel_name="python3").execute()
     seconds = float(notebook.cells[-1].outputs[0].data["text/plain"])

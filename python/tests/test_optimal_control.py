@@ -1,4 +1,4 @@
-"""An optimal control problem for a car with trailers: CasADi solves it with our formulas, and ``simulate`` replays the solution."""
+"""An optimal control problem for a car with trailers: CasADi solves it with Anholon's formulas, and ``simulate`` replays the solution."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ CONTROLS = (
 
 
 def solved(car: an.Model, f: an.Dynamics, intervals: int, end_time: float, aside: float) -> tuple[Any, Any]:
-    """Controls (inputs, moments) and states of the cheapest change of lane at a speed that begins and ends with 1 m/s."""
+    """Returns controls, shape (inputs, times), and states of the cheapest change of lane with a speed of 1 m/s at both ends."""
     ca = pytest.importorskip("casadi")
     rate, names = f.formulas.casadi(), [state.name for state in f.states]
     h, parts = end_time / intervals, 4
@@ -60,7 +60,7 @@ def test_a_car_with_trailers_changes_its_lane() -> None:
         text += f'[[table]]\nname = "{name}"\nx = {moments}\ny = {values.tolist()}\n'
     run = an.loads(text, set={"n": 2}).simulate(to=6, every="0.05", error_estimate=False).expect()
     assert run.report.constraints < 1e-12 and run.report.newton < 1e-12
-    # At the moments of the solution, the method of order 4 of the problem leaves its own error.
+    # The states differ by the error of the method of order 4 that the problem uses.
     for k in (10, 20, 30, 40):
         wanted = f.motion(states[:, k], t=moments[k])
         row = int(round(moments[k] / 0.05))

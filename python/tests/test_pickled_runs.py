@@ -1,4 +1,4 @@
-"""Runs that go to another process."""
+"""Runs that are pickled and sent to another process."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rates in independent velocities of `derive --format python`: those of dynamics(), at one state and at many."""
+"""The rates in independent velocities of `derive --format python` are those of dynamics(), at one state and at many."""
 
 import re
 from collections.abc import Callable
@@ -19,7 +19,7 @@ def run(text: str) -> dict[str, Any]:
 
 
 def compare(name: str, text: str) -> bool:
-    """Compares the rates, if there are any."""
+    """Compares the rates of a program with those of dynamics(). Returns False if the program has no rates."""
     f = an.load(name).dynamics()
     made = run(text)
     if "rates" not in made:
@@ -29,10 +29,10 @@ def compare(name: str, text: str) -> bool:
     draw = np.random.default_rng(1)
     x = f.start[:, None] + 0.1 * draw.standard_normal((len(f.start), 5000))
     rates, many = f(f.t0, x), made["rates"](f.t0, x)
-    # Relative to the largest number of a state, since terms cancel.
+    # Differences are relative to the largest rate of a state, since terms cancel.
     size = 1 + np.abs(rates).max(axis=0)
     np.testing.assert_allclose(many / size, rates / size, rtol=0, atol=1e-12)
-    # One state, as an array and as a list.
+    # One state is given as an array and as a list.
     for k in (0, 4095, 4096, 4999):
         one = made["rates"](f.t0, x[:, k].tolist())
         assert isinstance(one, list)
@@ -42,11 +42,11 @@ def compare(name: str, text: str) -> bool:
     out = np.empty_like(x)
     assert made["rates"](np.full(5000, f.t0), x, out=out) is out
     np.testing.assert_array_equal(out, many)
-    # The result may take the place of the states.
+    # `out` may be the array of the states.
     own = x.copy()
     assert made["rates"](f.t0, own, out=own) is own
     np.testing.assert_array_equal(own, many)
-    # Given parameters take another writing of the formulas, which rounds otherwise (the snake by 1.5e-14).
+    # Formulas with given parameters have another form and round differently (the snake by 1.5e-14).
     each = np.repeat(made["DEFAULTS"][:, None], 5000, axis=1)
     given = made["rates"](f.t0, x, each)
     np.testing.assert_allclose(given / size, many / size, rtol=0, atol=1e-13)
@@ -56,14 +56,14 @@ def compare(name: str, text: str) -> bool:
 
 
 def test_rates_are_those_of_dynamics(program: Callable[..., str]) -> None:
-    # The program of the last one has no rates.
+    # The program of the last model has no rates.
     compared = [name for name in MODELS if compare(name, program("derive", name, "--format", "python"))]
     assert compared == MODELS[:-1]
 
 
 def test_a_wrong_sign_is_found(program: Callable[..., str]) -> None:
     text = program("derive", "disc", "--format", "python")
-    # In the rates of given parameters, of one state and of many.
+    # The signs are in the rates for given parameters, for one state and for many.
     for found, wrong in ((r"(out\[6\] = )", r"\1-"), (r"return \[", r"return [-"), (r"_add\(x6, o4", r"_subtract(x6, o4")):
         before, after = text.split("def _rates", 1)
         changed = re.sub(found, wrong, after, count=1)
@@ -113,7 +113,7 @@ def test_where_a_formula_has_no_value_there_is_nan() -> None:
 
 
 def test_nearly_singular_equations_keep_their_digits(program: Callable[..., str]) -> None:
-    """The matrix of the rattleback is nearly singular: an elimination alone loses six digits, and its solution is corrected."""
+    """The matrix of the rattleback is nearly singular. Elimination loses six digits, and a correction of the solution restores them."""
     mpmath = pytest.importorskip("mpmath")
     f = an.load("rattleback").dynamics(minimal=False)
     made, names = run(program("derive", "rattleback", "--format", "python")), [state.name for state in f.states]

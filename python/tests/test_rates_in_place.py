@@ -1,4 +1,4 @@
-"""Rates put into an array of the caller, derivatives at kinks, and outputs beyond velocities."""
+"""Rates that are written to an array of the caller, derivatives at kinks, and outputs beyond velocities."""
 
 import anholon as an
 import numpy as np

@@ -1,4 +1,4 @@
-"""Rates of the model's states that are no linear functions of accelerations and multipliers."""
+"""Rates of the model's states that are not linear in accelerations and multipliers."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def f() -> an.Dynamics:
 
 
 def rates(x: np.ndarray, u: float, p: np.ndarray) -> np.ndarray:
-    """By hand: x' = v cos th, y' = v sin th, v' = a w^2, (J + m a^2) w' = u - m a v w, lambda = m (v w + a w')."""
+    """Returns the rates by hand: x' = v cos th, y' = v sin th, v' = a w^2, (J + m a^2) w' = u - m a v w, lambda = m (v w + a w')."""
     m, J, a, k = p
     v, w = x[3] * np.cos(x[2]) + x[4] * np.sin(x[2]), x[5]
     dv, dw = a * w * w, (u - m * a * v * w) / (J + m * a * a)
@@ -75,14 +75,14 @@ def test_forces_with_rates_of_states_are_in_the_arrays_of_the_equations(f: an.Dy
     x = np.stack([rocket.start, rocket.start + [0.2, 0, 0.1, 0.12, 1]], axis=1)
     mass, phi, bias = rocket.mass_matrix(0, x), rocket.constraint_jacobian(0, x), rocket.bias(0, x)
     for k, (fuel, at) in enumerate([(3, 0.4), (4, 0.6)]):
-        # By hand: fuel' = -2 - k x'', so the thrust c fuel' along -x and the force fuel' along y have a part by x''.
+        # By hand: fuel' = -2 - k x'', so the thrust c fuel' along -x and the force fuel' along y depend on x''.
         np.testing.assert_allclose(mass[..., k], [[10 + fuel - 100 * 0.1, 0], [0.1, 10 + fuel]], rtol=1e-14, atol=1e-14)
         np.testing.assert_allclose(bias[:, k], [-200, 2 + (10 + fuel) * 9.8], rtol=1e-14)
         direction = np.array([1, at])  # along the rail
         np.testing.assert_allclose(phi[..., k] @ direction, 0, atol=1e-15)
         assert abs(direction @ (mass[..., k] @ rocket(0, x[:, k])[2:4] + bias[:, k])) < 1e-12
         np.testing.assert_array_equal(bias[:, k], rocket.bias(0, x[:, k]))
-    # The rate of 'wear' is no unknown of the equations, as it is no linear function of these.
+    # The rate of 'wear' is no unknown of the equations, as it is not linear in them.
     plate = f.model.dynamics(minimal=False)
     assert phi.shape == (1, 2, 2) and plate.constraint_jacobian(0, plate.start).shape == (1, 3)
 

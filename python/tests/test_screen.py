@@ -1,4 +1,4 @@
-"""What notebooks show: formulas, tables, errors, bars of progress, and the picture that plays, in a browser without a network."""
+"""The output in notebooks: formulas, tables, errors, progress bars, and the animation, in a browser without a network."""
 
 import builtins
 import html.parser
@@ -19,7 +19,7 @@ CHROMIUM = pathlib.Path("/usr/bin/chromium")
 
 
 class Balanced(html.parser.HTMLParser):
-    """Reads HTML and notes elements that are not closed in order."""
+    """Reads HTML and records elements that are not closed in order."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -181,7 +181,7 @@ def test_animations(disc: an.Model, monkeypatch: pytest.MonkeyPatch) -> None:
     assert isinstance(run.animate(), an.Page), "without anywidget the page plays in a frame"
 
 
-# A notebook of one cell: it renders the widget's module and says what was painted, refused, complained about.
+# A page like a notebook of one cell. It renders the widget's module and reports what was drawn, blocked or logged as an error.
 PAGE = """<!doctype html><html><head><meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'unsafe-inline' blob:; style-src 'unsafe-inline';
  font-src data:; img-src data: blob:"><style>body {{ background: {background}; width: 60rem }}</style></head>

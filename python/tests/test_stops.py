@@ -1,4 +1,4 @@
-"""Ends from outside: what `stop` may return, what `run(t)` has of a motion that was ended, Ctrl-C in what keeps nothing."""
+"""Motions that end from outside: values that `stop` may return, `run(t)` of such a motion, Ctrl-C in functions that keep no results."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ import pytest
 
 CtrlC = Callable[..., Callable[[], float]]
 
-_SOON = 0.3  # s of work: a tenth, and what a busy machine adds
+_SOON = 0.3  # s of processor time: a tenth of a second, and a margin for a busy machine
 
 
 class Broken:
-    """What has no truth."""
+    """An object without a truth value."""
 
     def __bool__(self) -> bool:
         raise RuntimeError("no truth here")
 
 
 def after_calls(answer: object, calls: int = 3) -> Callable[[], object]:
-    """A stop that is False some times, then the answer."""
+    """Returns a function for `stop` that is False for some calls, then the answer."""
     counted = iter(range(10**9))
     return lambda: next(counted) >= calls and answer
 
@@ -42,7 +42,7 @@ def test_what_is_true_stops(disc: an.Model, answer: object) -> None:
 
 @pytest.mark.parametrize("answer", [False, np.bool_(False), None, 0, "", []])
 def test_what_is_false_goes_on(answer: object) -> None:
-    # In a process of its own: an answer that ends the interpreter is seen as one.
+    # A process of its own shows an answer that would end the interpreter.
     code = f"import anholon as an, numpy as np; print(an.load('disc').simulate(to=3000, error_estimate=False, stop=lambda: {'np.bool_(False)' if answer is not False and isinstance(answer, np.bool_) else repr(answer)}).ok)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (0, "True\n"), done.stderr

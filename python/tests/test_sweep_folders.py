@@ -1,4 +1,4 @@
-"""Sweeps in folders: the same numbers as without one, whoever computed the parts; mistakes are named and nothing is overwritten."""
+"""Sweeps in folders: the numbers are those of sweeps in memory, whatever process computed the parts; errors overwrite no files."""
 
 import hashlib
 import os
@@ -25,7 +25,7 @@ def hashes(folder: pathlib.Path) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def quiet(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
-    """The folder of one undisturbed process."""
+    """Returns the folder that one process computed without an interruption."""
     folder = tmp_path_factory.mktemp("sweeps") / "quiet"
     an.load("disc").sweep({"phi'": SPINS}, to=1, out=folder, chunk=7)
     return folder
@@ -170,7 +170,7 @@ def test_borders_are_refined_whoever_computes(tmp_path: pathlib.Path, disc: an.M
             bit_by_bit.fill(share=(share, 2), threads=1, refine=number, refine_by=("theta", 0.5))
         bit_by_bit.fill(refine=number, refine_by=("theta", 0.5))
     assert hashes(tmp_path / "bits") == hashes(tmp_path / "once")
-    # The grid is halved between neighbours, and only at some places.
+    # The grid is halved between neighbours, but not everywhere.
     spins = np.unique(once["phi'(0)"])
     assert np.isclose(np.diff(spins).min(), 0.125) and once.cases < 49 * 33 / 2
     for generations in (3, 2, 1):
@@ -214,7 +214,7 @@ def test_a_folder_is_judged_once(tmp_path: pathlib.Path, disc: an.Model) -> None
     kept = tmp_path / "f" / "_judgement.json"
     before = kept.stat().st_mtime_ns
     assert an.open_sweep(folder.path).judge() == judged and kept.stat().st_mtime_ns == before
-    # The estimate bounds what two runs of the worst case differ by.
+    # The estimate bounds the difference of two runs of the worst case.
     case = error["worst_case"]
     sharp = folder.run(case, digits=25, tolerance="1e-24")
     for name in ("x", "theta"):
@@ -235,7 +235,7 @@ def test_chosen_cases_and_their_motions(tmp_path: pathlib.Path, disc: an.Model) 
         run = an.open_sweep(folder.path).run(case, every="0.5")
         assert len(run) == 7 and run["phi'"][0] == folder["phi'(0)"][case]
         for name in ("theta", "x", "phi'"):
-            # A disc that nearly lies flat enlarges the last digits, in which a shared plan differs.
+            # A sweep shares a plan between cases, which changes the last digits; a disc that nearly lies flat amplifies the difference.
             assert np.isclose(run[name][-1], folder[name][case], rtol=1e-7, atol=1e-7)
     assert not np.isclose(folder.run(0)["theta"][-1], folder["theta"][1])
     with pytest.raises(IndexError, match="cases"):
@@ -306,7 +306,7 @@ def test_motions_of_a_folder_of_the_command_line(tmp_path: pathlib.Path) -> None
 
 
 def test_a_folder_keeps_the_files_of_its_model(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The motion of a case and its missing parts follow from the folder alone, wherever it is opened."""
+    """The folder is enough to compute the motion of a case and missing parts, from any working folder."""
     place = tmp_path / "models"
     place.mkdir()
     (place / "thrust.csv").write_text("0,1\n3,2\n6,-1\n")

@@ -1,4 +1,4 @@
-"""What a sweep tells beside its numbers: notes, units, and files in another process."""
+"""Notes and units of a sweep, and files that another process writes."""
 
 import pathlib
 import pickle

@@ -1,4 +1,4 @@
-"""Sweeps in memory as files and as pictures."""
+"""Files, tables and figures of sweeps in memory."""
 
 import json
 import pathlib
@@ -36,7 +36,7 @@ def test_a_file_is_that_of_the_command_line(options: dict[str, Any], measured: a
     model.write_text(MEASURED)
     words = ["--at", ",".join(str(t) for t in options["at"])] if "at" in options else []
     if "columns" in options:
-        # Beside times the command line always writes t, behind the number of the case.
+        # With --at the command line always writes t, after the number of the case.
         usual = ["m", "x(0)", "outcome", "event"] + ([] if "at" in options else ["t"])
         words += ["--columns", ",".join(usual + options["columns"])]
     program("sweep", str(model), "--vary", "m=1,2", "--vary", "x=1:3:3", "--reduce", "max(x)", *words, "--quiet", "-o", str(tmp_path / "a.csv"))

@@ -1,4 +1,4 @@
-"""Systems of sympy.physics.mechanics come in, and have the accelerations that SymPy finds for them."""
+"""Systems of sympy.physics.mechanics are imported with the accelerations that SymPy finds for them."""
 
 import contextlib
 from collections.abc import Callable
@@ -16,7 +16,7 @@ Made = tuple[Any, dict[Any, Any]]
 
 
 def rolling_disc() -> Made:
-    """Of the documentation of KanesMethod: only the velocity of the mass centre is known."""
+    """Makes the disc of the documentation of KanesMethod, of whose mass centre only the velocity is known."""
     q1, q2, q3, u1, u2, u3 = me.dynamicsymbols("q1 q2 q3 u1 u2 u3")
     r, m, g = sm.symbols("r m g")
     N = me.ReferenceFrame("N")
@@ -36,7 +36,7 @@ def rolling_disc() -> Made:
 
 
 def pendulum_on_cart(links: int = 2) -> Made:
-    """sympy.physics.mechanics.models, with a force on the cart that is a function of time."""
+    """Makes a system of sympy.physics.mechanics.models, with a force on the cart that is a function of time."""
     models = pytest.importorskip("sympy.physics.mechanics.models")
     kane = models.n_link_pendulum_on_cart(links, cart_force=False)
     symbols = sorted(set().union(*(e.free_symbols for e in kane.mass_matrix_full)) | {sm.Symbol("g")}, key=str)
@@ -67,7 +67,7 @@ def torsional_pendulum() -> Made:
 
 
 def two_particles_with_odd_speeds() -> Made:
-    """Generalized speeds that are combinations of the rates."""
+    """Makes a system whose generalized speeds are combinations of the rates."""
     q1, q2, u1, u2 = me.dynamicsymbols("q1 q2 u1 u2")
     m, k = sm.symbols("m k")
     N = me.ReferenceFrame("N")
@@ -82,7 +82,7 @@ def two_particles_with_odd_speeds() -> Made:
 
 
 def skate() -> Made:
-    """A dependent speed: a sleigh on a blade."""
+    """Makes a sleigh on a blade, which has a dependent speed."""
     x, y, th, ux, uy, w = me.dynamicsymbols("x y th u_x u_y w")
     m, J, a = sm.symbols("m J a")
     N = me.ReferenceFrame("N")
@@ -103,7 +103,7 @@ def skate() -> Made:
 
 
 def lagrange_pendulum() -> Made:
-    """Cartesian coordinates and a holonomic constraint, by the bodies of a LagrangesMethod."""
+    """Makes a LagrangesMethod with bodies, Cartesian coordinates and a holonomic constraint."""
     q1, q2 = me.dynamicsymbols("q1:3")
     L, m, g = sm.symbols("L m g")
     N = me.ReferenceFrame("N")
@@ -133,7 +133,7 @@ def lagrange_with_potential() -> Made:
 
 
 def system_of_joints() -> Made:
-    """System with joints: a cart and a pendulum."""
+    """Makes a System with joints: a cart and a pendulum."""
     M, m, l, g = sm.symbols("M m l g")
     q1, q2, u1, u2 = me.dynamicsymbols("q1 q2 u1 u2")
     rail = me.RigidBody("rail")
@@ -151,7 +151,7 @@ def system_of_joints() -> Made:
 
 
 def four_bar() -> Made:
-    """Of the documentation: three links on pins, closed by two holonomic constraints."""
+    """Makes the linkage of the documentation: three links on pins, closed by two holonomic constraints."""
     q = me.dynamicsymbols("q1:4")
     u = me.dynamicsymbols("u1:4")
     l1, l2, l3, l4, m1, m2, m3, g = sm.symbols("l1 l2 l3 l4 m1 m2 m3 g")
@@ -202,7 +202,8 @@ CASES: list[Callable[[], Made]] = [
 
 
 def bicycle() -> Made:
-    """Whipple's bicycle of SymPy's tests (test_kane3): wheels whose frames have no orientation, speeds without coordinates."""
+    """Makes Whipple's bicycle of SymPy's tests (test_kane3), which has wheels whose frames have no orientation, and speeds without
+    coordinates."""
     import inspect
     import os
     import textwrap
@@ -215,7 +216,7 @@ def bicycle() -> Made:
     exec(source, made)
     method = made["KM"]
     method.kanes_equations(made["BL"], made["FL"])
-    # The benchmark of Meijaard and others, rounded.
+    # The numbers are those of the benchmark of Meijaard and others, rounded.
     numbers = "WFrad 0.35 WRrad 0.3 htangle 0.314 forkoffset 0.08 forklength 0.54 framelength 0.98 forkcg1 0.03 forkcg3 0.04 framecg1 0.3 framecg3 0.6 "
     numbers += "Iwr11 0.06 Iwr22 0.12 Iwf11 0.14 Iwf22 0.28 Iframe11 9.2 Iframe22 11 Iframe33 2.8 Iframe31 2.4 Ifork11 0.06 Ifork22 0.06 Ifork33 0.01 "
     numbers += "Ifork31 -0.007 g 9.8125 mframe 85 mfork 4 mwf 3 mwr 2"
@@ -228,7 +229,7 @@ def chain_of_pendulums() -> Made:
 
 
 def links_in_a_chain() -> Made:
-    """n links by Lagrange's method, with bodies."""
+    """Makes a LagrangesMethod of n links with bodies."""
     n = 3
     q = me.dynamicsymbols(f"q1:{n + 1}")
     m, l, g, J = sm.symbols("m l g J")
@@ -252,7 +253,7 @@ def links_in_a_chain() -> Made:
 
 
 def lagrange_skate() -> Made:
-    """LagrangesMethod with a nonholonomic constraint."""
+    """Makes a LagrangesMethod with a nonholonomic constraint."""
     x, y, th = q = me.dynamicsymbols("x y th")
     t = me.dynamicsymbols._t
     m, J = sm.symbols("m J")
@@ -271,7 +272,7 @@ def lagrange_skate() -> Made:
 
 
 def actuators() -> Made:
-    """A System whose loads are actuators: a spring, a damper and a torque."""
+    """Makes a System whose loads are actuators: a spring, a damper and a torque."""
     for name in ("LinearSpring", "LinearDamper", "TorqueActuator", "LinearPathway"):
         if not hasattr(me, name):
             pytest.skip(f"this SymPy has no {name}")
@@ -307,7 +308,7 @@ CASES += [bicycle, chain_of_pendulums, links_in_a_chain, lagrange_skate, actuato
 
 
 def accelerations_of_sympy(method: Any, made: _Import, values: dict[Any, Any], state: dict[Any, Any]) -> dict[Any, float]:
-    """q'' at a state (coordinates, and rates by q') by SymPy's own equations, with 30 digits."""
+    """Returns q'' at a state (coordinates, and rates by q') by SymPy's own equations, computed with 40 digits."""
     q, u, t = list(method.q), [x for x in made.parts.u], made.writer.time
     numbers = {**{k: sm.Float(str(v), 40) for k, v in values.items()}, **{k: sm.Float(v, 40) for k, v in state.items()}}
     rates = [x.diff(t) for x in made.writer.q]
@@ -327,7 +328,7 @@ def accelerations_of_sympy(method: Any, made: _Import, values: dict[Any, Any], s
 
     import mpmath
 
-    # By mpmath, since substitution takes minutes for a bicycle.
+    # mpmath solves the equations, since substitution takes minutes for a bicycle.
     known = {**{r: numbers[r] for r in rates}, **numbers}
     with mpmath.workdps(40):
         a, b = (sm.lambdify(list(known), matrix, "mpmath", cse=True, dummify=True)(*(mpmath.mpf(str(v)) for v in known.values())) for matrix in solved)
@@ -336,7 +337,7 @@ def accelerations_of_sympy(method: Any, made: _Import, values: dict[Any, Any], s
     change = dict(zip(speeds, x[before : before + len(speeds)], strict=True))
     if not u:
         return {c: float(change[c.diff(t)]) for c in q}
-    # q' = F(q, u): its rate by the chain rule.
+    # q'' is the rate of q' = F(q, u), by the chain rule.
     kinematic, own = sm.Matrix(made.parts.kinematic), [x.diff(t) for x in q]
     flow = kinematic.jacobian(own).LUsolve(-kinematic.subs(dict.fromkeys(own, 0)))
     found = {}
@@ -349,8 +350,8 @@ def accelerations_of_sympy(method: Any, made: _Import, values: dict[Any, Any], s
 
 
 def consistent(made: _Import, values: dict[Any, Any]) -> dict[Any, Any]:
-    """A random state that satisfies the constraints: coordinates, and rates by q'. Newton's method may miss a loop that
-    cannot be closed from where it starts; another draw starts elsewhere."""
+    """Returns a random state that satisfies the constraints: coordinates, and rates by q'. Newton's method may fail to close a loop
+    from its initial values, so several initial values are tried."""
     for seed in range(3, 12):
         with contextlib.suppress(ValueError, ZeroDivisionError):
             return drawn(made, values, seed)
@@ -358,7 +359,7 @@ def consistent(made: _Import, values: dict[Any, Any]) -> dict[Any, Any]:
 
 
 def drawn(made: _Import, values: dict[Any, Any], seed: int) -> dict[Any, Any]:
-    """A random state of a seed."""
+    """Returns the state that `consistent` finds for one seed."""
     draw = np.random.default_rng(seed)
     q = made.writer.q
     state = {c: float(x) for c, x in zip(q, draw.uniform(0.3, 0.9, len(q)), strict=True)}
@@ -413,7 +414,7 @@ def test_a_motion_of_an_imported_system() -> None:
 
 
 def sleigh() -> tuple[Any, dict[Any, Any], list[Any]]:
-    """A sleigh whose speeds are u1 along its axis and u2 about the vertical; an auxiliary speed asks for the blade's force."""
+    """Makes a sleigh whose speeds are u1 along its axis and u2 about the vertical, with an auxiliary speed for the force of the blade."""
     x, y, th, u1, u2, side, blade = me.dynamicsymbols("x y th u1 u2 side blade")
     m, J, a, c = sm.symbols("m J a c")
     N = me.ReferenceFrame("N")

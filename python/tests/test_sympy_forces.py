@@ -1,4 +1,4 @@
-"""Forces that models of SymPy hold: functions with branches, actuators, pathways and friction come in with SymPy's accelerations."""
+"""Forces of SymPy's models (functions with branches, actuators, pathways, friction) are imported with SymPy's accelerations."""
 
 from collections.abc import Callable
 from typing import Any
@@ -20,7 +20,7 @@ NUMBERS = {m: 1.5, J: 0.25, k: 20, l: 0.5, c: 0.75}
 
 
 def agree(method: Any, values: dict[Any, Any]) -> an.Model:
-    """The accelerations of the model at a random state are those of SymPy's equations."""
+    """Asserts that the accelerations of the model at a random state are those of SymPy's equations; returns the model."""
     made = _Import(method)
     model = an.from_sympy(method, values=values)
     state, names = consistent(made, values), made.writer.names
@@ -35,7 +35,7 @@ def agree(method: Any, values: dict[Any, Any]) -> an.Model:
 
 
 def pushed(force: Any, torque: Any = 0) -> Any:
-    """A rod on a slide: coordinates x, th; a force along x and a torque."""
+    """Makes a rod on a slide with coordinates x, th, a force along x and a torque."""
     N = me.ReferenceFrame("N")
     B = N.orientnew("B", "Axis", [th, N.z])
     B.set_ang_vel(N, w * N.z)
@@ -99,7 +99,7 @@ def test_what_has_no_counterpart_is_named(name: str) -> None:
 
 
 def pulled(pathway: Callable[[Any, Any, Any, Any], Any], actuator: Callable[[Any], Any]) -> Made:
-    """A particle in the plane at (x, th), on which an actuator acts along a pathway from a fixed point."""
+    """Makes a particle in the plane at (x, th), on which an actuator acts along a pathway from a fixed point."""
     N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
     O.set_vel(N, 0)
     P = O.locatenew("P", (2 + x) * N.x + (1 + th) * N.y)
@@ -165,7 +165,7 @@ def test_actuators_along_pathways(name: str) -> None:
 
 
 def joined(kind: str) -> Made:
-    """A body on a joint to a body on a slide, in a System."""
+    """Makes a System of a body on a joint to a body on a slide."""
     system = me.System.from_newtonian(me.RigidBody("floor"))
     N = system.frame
     cart, bob = me.RigidBody("cart", mass=m), me.RigidBody("bob", mass=2)

@@ -1,6 +1,6 @@
-"""The systems of SymPy's own tests of mechanics come in, and have the accelerations that SymPy finds for them.
+"""The systems of SymPy's own tests of mechanics are imported with the accelerations that SymPy finds for them.
 
-SymPy's tests run here, and every KanesMethod, LagrangesMethod and System that they make is read.
+The module runs SymPy's tests and reads every KanesMethod, LagrangesMethod and System that they make.
 """
 
 import contextlib
@@ -24,12 +24,12 @@ MODULES = ["test_kane4", "test_lagrange2", "test_models"]
 if os.environ.get("ANHOLON_LONG"):
     MODULES += ["test_kane", "test_kane2", "test_kane5", "test_lagrange", "test_jointsmethod", "test_system_class", "test_linearize"]
 
-# What cannot agree, and why.
+# Systems that are refused, with a text of the message.
 REFUSED = {
     "test_kane.test_issue_24887": "no inertia acts on q3",  # the mass matrix of SymPy is singular, too
     "test_kane2.test_sub_qdot2": "the model has no body",
 }
-# Here SymPy was told that the point of a wheel that touches the ground is not accelerated.
+# This test sets the acceleration of the point of a wheel that touches the ground to zero.
 TOLD_OTHERWISE = {"test_kane.test_aux"}
 
 
@@ -45,14 +45,14 @@ def tried(module: Any) -> Iterator[tuple[str, Callable[[], None]]]:
                     for before in ("_empty_system_setup", "_filled_system_setup", "setup_method"):
                         if hasattr(made, before):
                             with contextlib.suppress(TypeError):
-                                inspect.unwrap(getattr(of, before))(made)  # some are fixtures
+                                inspect.unwrap(getattr(of, before))(made)  # unwrap() is needed for fixtures
                     getattr(made, method)()
 
                 yield f"{name}.{method}", run
 
 
 def systems(module: str, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Any]]:
-    """What the tests of a module make, by the name of the test."""
+    """Returns the systems that the tests of a module make, with the names of the tests."""
     found: list[tuple[str, Any]] = []
     here = ""
     for of, name in ((me.KanesMethod, "kanes_equations"), (me.LagrangesMethod, "form_lagranges_equations"), (me.System, "form_eoms")):
@@ -76,7 +76,7 @@ def systems(module: str, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Any
 
 
 def values_for(method: Any) -> dict[Any, Any]:
-    """Random values of all symbols and given functions; products of inertia are small."""
+    """Returns random values of all symbols and given functions; products of inertia are small."""
     made, draw = _Import(method), random.Random(4)
     with contextlib.suppress(an.ModelError):
         made.text("", {}, {})
@@ -88,7 +88,7 @@ def values_for(method: Any) -> dict[Any, Any]:
 
 
 def deviation(method: Any) -> float:
-    """The largest relative difference of the accelerations."""
+    """Returns the largest relative difference between the accelerations of SymPy and of the model."""
     values = values_for(method)
     model, made = an.from_sympy(method, values=values), _Import(method)
     state, names = consistent(made, values), made.writer.names

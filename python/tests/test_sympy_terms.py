@@ -1,4 +1,4 @@
-"""Terms of SymPy's equations that bodies and loads alone do not have come in: accelerations are those of SymPy's own matrices."""
+"""Terms of SymPy's equations that do not follow from bodies and loads are imported: accelerations are those of SymPy's matrices."""
 
 import math
 import re
@@ -21,7 +21,8 @@ NUMBERS: dict[Any, Any] = {m: 1.5, k: 2, g: 9.8125, l: 0.75}
 
 
 def agree(method: Any, values: dict[Any, Any], state: Sequence[float], rates: Sequence[float], at: float = 0.375) -> an.Model:
-    """The accelerations of the model are those of SymPy at a state of ``method.q``, if speeds are the rates of coordinates in their order."""
+    """Asserts that the accelerations of the model are those of SymPy at a state of ``method.q``, and returns the model. The speeds must
+    be the rates of the coordinates in their order."""
     functions = {f: e for f, e in values.items() if f.args}
     numbers = {**{s: sm.sympify(e) for s, e in values.items() if not s.args}, t: sm.Float(at, 40)}
     speeds = getattr(method, "u", None) or [q.diff(t) for q in method.q]
@@ -43,7 +44,7 @@ def agree(method: Any, values: dict[Any, Any], state: Sequence[float], rates: Se
 
 
 def cart_and_bob(constrained: bool, formed: bool) -> Any:
-    """A System of joints whose speeds are the rates of the coordinates, as Lagrange's equations need them."""
+    """Makes a System of joints whose speeds are the rates of the coordinates, as Lagrange's equations need them."""
     q, p = me.dynamicsymbols("q p")
     M = sm.Symbol("M")
     rail, cart, bob, frame = me.RigidBody("rail"), me.RigidBody("cart", mass=M), me.Particle("bob", mass=m), me.ReferenceFrame("frame")
@@ -72,11 +73,11 @@ def test_a_system_with_lagranges_equations(constrained: bool) -> None:
         rates[0] = -float(sm.diff(system.holonomic_constraints[0], system.q[1]).subs({system.q[1]: 0.5, l: 0.75})) * rates[1]
     formed = agree(system, values, state, rates)
     assert an.from_sympy(cart_and_bob(constrained, False), values=values).text == an.from_sympy(system, values=values).text
-    assert "g" in formed.text  # by the potential energies
+    assert "g" in formed.text  # gravity comes from the potential energies
 
 
 def driven_by_lagrange(holonomic: list[Any], nonholonomic: list[Any]) -> Any:
-    """A particle in the plane x, z."""
+    """Makes a particle in the plane x, z."""
     N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
     O.set_vel(N, 0)
     P = O.locatenew("P", x * N.x + z * N.z)
@@ -102,7 +103,7 @@ def driven_by_kane(velocity: Any, configuration: Any = None) -> Any:
 
 
 GIVEN = 1 + sm.sin(t) / 2
-# By the constraint: the method, and z and z' of x = 1/2, x' = 3/4, y and y'.
+# For each constraint: the method, and a function of (y, y') that returns (z, z') at x = 1/2, x' = 3/4.
 DRIVEN: dict[str, tuple[Callable[[], Any], Callable[[Any, Any], tuple[Any, Any]]]] = {
     "z = y(t)": (lambda: driven_by_lagrange([z - y], []), lambda y, dy: (y, dy)),
     "z = y(t) x^2": (lambda: driven_by_lagrange([z - y * x**2], []), lambda y, dy: (y / 4, 3 * y / 4 + dy / 4)),
@@ -178,7 +179,7 @@ def test_masses_that_vary(name: str, by: str) -> None:
 INERTIAS: dict[str, Callable[[Any, Any], Any]] = {
     "of time": lambda A, B: me.inertia(B, 3 + sm.sin(t), 4, 5 - t, 0.2 * t, 0.1, 0.3 * t),
     "of a coordinate": lambda A, B: me.inertia(B, 3 + sm.sin(x), 4, 5 + z**2, 0.2 * z, 0.1, 0.3 * x),
-    # Along the axes of a frame in which the body turns: along its own axes it varies with the angle.
+    # Inertia along the axes of a frame in which the body turns; along the body's own axes it varies with the angle.
     "along other axes": lambda A, B: me.inertia(A, 3, 4, 5, 0.1, 0.2, 0.3),
 }
 
@@ -214,7 +215,7 @@ def test_masses_that_are_constant_expel_nothing() -> None:
 
 
 def test_a_mass_of_the_velocity() -> None:
-    """The Lagrangian of a particle whose mass grows with its speed is read without the particle."""
+    """A particle whose mass grows with its speed is read by the Lagrangian, not as a body."""
     N, P = me.ReferenceFrame("N"), me.Point("P")
     P.set_vel(N, x.diff(t) * N.x)
     fast = me.Particle("fast", P, m * (1 + x.diff(t) ** 2))
@@ -224,7 +225,7 @@ def test_a_mass_of_the_velocity() -> None:
 
 
 def pushed(force: Any, q: Any = x, u: Any = vx, weight: Any = m) -> Any:
-    """A particle on a line under a force."""
+    """Makes a particle on a line under a force."""
     N, P = me.ReferenceFrame("N"), me.Point("P")
     P.set_vel(N, u * N.x)
     method = me.KanesMethod(N, [q], [u], kd_eqs=[u - q.diff(t)])
@@ -260,7 +261,7 @@ def test_names_beyond_ascii() -> None:
 
 
 def turned_by_speeds() -> Any:
-    """A body whose frame has an angular velocity along its own axes, and no orientation: Euler's equations."""
+    """Makes a body whose frame has an angular velocity along its own axes, and no orientation, as in Euler's equations."""
     u, q = me.dynamicsymbols("u1:4"), me.dynamicsymbols("q1:4")
     N, B, O = me.ReferenceFrame("N"), me.ReferenceFrame("B"), me.Point("O")  # noqa: E741
     B.set_ang_vel(N, u[0] * B.x + u[1] * B.y + u[2] * B.z)
@@ -286,7 +287,8 @@ def test_what_a_method_lacks_is_named() -> None:
 
 
 def rolling_disc_with_six_speeds() -> Any:
-    """Of SymPy's test of linearization: the velocity of the centre is along axes of the disc, and has 1600 terms along those that rest."""
+    """Makes the disc of SymPy's test of linearization. The velocity of its centre is given along axes of the disc and has 1600 terms
+    along fixed axes."""
     r = sm.Symbol("r")
     q, u = me.dynamicsymbols("q1:7"), me.dynamicsymbols("u1:7")
     N, NO = me.ReferenceFrame("N"), me.Point("NO")
@@ -315,7 +317,7 @@ def rolling_disc_with_six_speeds() -> Any:
 
 
 def test_velocities_of_many_terms() -> None:
-    """The search for the integral of the velocity ends, and finds the coordinates of the centre without others beside them."""
+    """The search for the integral of the velocity ends and finds the coordinates of the centre, so that no coordinates are added."""
     method = rolling_disc_with_six_speeds()
     assert len(_Import(method).writer.q) == 6
     assert deviation(method) < 1e-12
@@ -335,7 +337,7 @@ def test_symbols_with_reserved_names_come_in() -> None:
 
 
 def quaternion_top() -> tuple[Any, dict[Any, Any], list[Any]]:
-    """A heavy top whose orientation is a quaternion, with the configuration constraint that its length is 1."""
+    """Makes a heavy top whose orientation is a quaternion, with the configuration constraint that its length is 1."""
     e, u = me.dynamicsymbols("e0:4"), me.dynamicsymbols("u1:4")
     inertia = sm.symbols("I1:4")
     N, O = me.ReferenceFrame("N"), me.Point("O")
@@ -355,7 +357,7 @@ def test_a_quaternion_turns_beyond_half_a_turn() -> None:
     model = an.from_sympy(method, values=values, initial={e0: 1, e1: 0, e2: 0, e3: 0, u1: 6, u2: 1, u3: 2})
     run = model.simulate(to=0.6, every=0.1).expect()
     assert run["e0"][0] == 1 and run["e0"][-1] < 0 and min(of.digits for of in run.report.trust) >= 11
-    # At half a turn, where e0 vanishes: e' = S(e) u, so that e'' = S(e') u + S(e) u'.
+    # The state is at half a turn, where e0 vanishes; e' = S(e) u, so that e'' = S(e') u + S(e) u'.
     state, speed = {e0: 0, e1: 0.6, e2: 0.8, e3: 0}, {u1: 1, u2: 0.5, u3: 2}
     ours = an.from_sympy(method, values=values, initial={**state, **speed}).evaluate()
 
@@ -382,7 +384,7 @@ def test_a_lagrangian_whose_inertia_has_a_negative_part() -> None:
 
 
 def craft() -> tuple[Any, dict[Any, Any], list[Any]]:
-    """A free body whose speeds are the components of its velocity and its spin along its own axes."""
+    """Makes a free body whose speeds are the components of its velocity and its spin along its own axes."""
     q, u = me.dynamicsymbols("x y z psi theta phi"), me.dynamicsymbols("u1:7")
     N, O = me.ReferenceFrame("N"), me.Point("O")
     B = N.orientnew("B", "Body", q[3:], "321")
@@ -410,7 +412,7 @@ def test_speeds_along_the_axes_of_a_body_at_any_heading() -> None:
 
 
 def carried_coin() -> tuple[Any, dict[Any, Any]]:
-    """A coin on a floor. Its first three speeds are those of a frame that does not turn about the axis of the coin, whose
+    """Makes a coin on a floor. Its first three speeds are those of a frame that does not turn about the axis of the coin, whose
     own turning is u2 / tan(beta)."""
     x, y, a, b, c, u1, u2, u3 = me.dynamicsymbols("x y alpha beta gamma u1 u2 u3")
     m, R, g = sm.symbols("m R g")
@@ -432,12 +434,12 @@ def carried_coin() -> tuple[Any, dict[Any, Any]]:
 
 
 def test_tangents_in_denominators_have_no_poles() -> None:
-    """An upright coin that spins and rolls, where tan(beta) has its pole, accelerates as by SymPy's equations beside it."""
+    """An upright coin, at which tan(beta) has its pole, has the accelerations of equations derived by hand."""
     method, values = carried_coin()
     rates = {"alpha'": 0.4, "beta'": 0.3, "gamma'": 3}
     upright = an.from_sympy(method, values=values, initial={"alpha": 0.1, "beta": "pi/2", **rates})
     assert "tan" not in upright.text
-    # By hand, of a thin disc: (5/4) beta'' = -(3/2) alpha' (gamma' + alpha' cos beta) sin beta + (1/4) alpha'^2 sin beta cos beta
+    # By hand, for a thin disc: (5/4) beta'' = -(3/2) alpha' (gamma' + alpha' cos beta) sin beta + (1/4) alpha'^2 sin beta cos beta
     # + (g/R) cos beta, and (1/4) alpha'' sin beta = (1/2) beta' (gamma' + alpha' cos beta) - (1/2) alpha' beta' cos beta.
     found = upright.evaluate().accelerations
     assert found["beta''"] == pytest.approx(-1.2 * 0.4 * 3, rel=1e-12)
@@ -463,7 +465,7 @@ def test_acceleration_constraints_that_say_something_else_are_told(more: int) ->
 
 
 def test_the_force_of_an_auxiliary_speed_needs_no_value() -> None:
-    """The tension of a pendulum does no work, and cancels."""
+    """The tension of a pendulum does no work and cancels in the generalized force."""
     q, u, aux, tension = me.dynamicsymbols("q u u_a T")
     m, l, g = sm.symbols("m l g")
     N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741

@@ -1,4 +1,4 @@
-"""Bodies of SymPy that turn: inertias of one axis, tilts by floats, and frames that have only an angular velocity."""
+"""Bodies of SymPy that turn: inertias about one axis, tilts by floats, and frames that have only an angular velocity."""
 
 import re
 import warnings
@@ -21,7 +21,7 @@ O.set_vel(N, 0)
 
 
 def agree(method: Any, values: dict[Any, Any]) -> an.Model:
-    """The accelerations of the model at a random state are those of SymPy's equations."""
+    """Asserts that the accelerations of the model at a random state are those of SymPy's equations; returns the model."""
     made = _Import(method)
     numbers = {**values, t: 0}
     state, names = consistent(made, numbers), made.writer.names
@@ -34,7 +34,7 @@ def agree(method: Any, values: dict[Any, Any]) -> an.Model:
 
 
 def one_axis(axis: Any, moments: Any, products: Any = (0, 0, 0)) -> Any:
-    """A body on an axis that rests, under its weight and a torque."""
+    """Makes a body on a fixed axis, under its weight and a torque."""
     B = me.ReferenceFrame("B")
     B.orient_axis(N, axis, q)
     B.set_ang_vel(N, u * axis.normalize())
@@ -66,7 +66,7 @@ def test_of_a_body_on_an_axis_one_moment_acts(name: str) -> None:
 
 
 def two_axes(inertia: Any) -> Any:
-    """A body that turns about z, and about its own x."""
+    """Makes a body that turns about z and about its own x axis."""
     A = N.orientnew("A", "Axis", [q, N.z])
     B = A.orientnew("B", "Axis", [p, A.x])
     A.set_ang_vel(N, u * N.z)
@@ -88,7 +88,7 @@ def test_moments_that_no_body_has_are_told(moments: Any) -> None:
     )
     with pytest.warns(UserWarning, match=rf"no body has the inertia of b, whose moments are {given}: .* in space, {advice}$") as told:
         agree(two_axes(lambda B: me.inertia(B, *moments)), NUMBERS)
-    assert told[0].filename.endswith("test_sympy_turns.py")  # where from_sympy is called
+    assert told[0].filename.endswith("test_sympy_turns.py")  # the place at which from_sympy is called
 
 
 def test_sums_of_decimals_are_written_as_decimals() -> None:
@@ -105,7 +105,7 @@ def test_moments_that_a_body_has_are_not_told() -> None:
 
 
 def tilted(tilt: Any, point: Any = lambda D: 0.1 * D.z + 0.2 * D.y) -> Any:
-    """A bead on a tilted bar that turns."""
+    """Makes a bead on a tilted bar that turns."""
     A = N.orientnew("A", "Axis", [q, N.z])
     D = A.orientnew("D", "Axis", [tilt, A.y])
     A.set_ang_vel(N, u * N.z)
@@ -125,7 +125,7 @@ def test_a_bead_on_a_bar_tilted_by_a_float(tilt: Any) -> None:
 
 
 def test_a_velocity_that_differs_by_little_is_another_one() -> None:
-    """A difference of 1e-9 is no rounding: the bead then follows its velocity."""
+    """A difference of 1e-9 between factors is no rounding error: the model then follows the velocity of the bead."""
     P = O.locatenew("P", 0.3 * q * N.x)
     P.set_vel(N, 0.300000001 * u * N.x)
     method = me.KanesMethod(N, [q], [u], kd_eqs=[q.diff() - u])
@@ -134,7 +134,7 @@ def test_a_velocity_that_differs_by_little_is_another_one() -> None:
 
 
 def tilted_body(by: str) -> Any:
-    """A body that turns in a frame that floats tilt."""
+    """Makes a body that turns in a frame whose tilt is given by floats."""
     A = N.orientnew("A", "Axis", [q, N.z])
     A.set_ang_vel(N, u * N.z)
     D = A.orientnew("D", "Body", (0.3, 0.2, 0.7), "321") if by != "axis" else A
@@ -170,7 +170,7 @@ def test_bodies_in_frames_that_floats_tilt(by: str) -> None:
 
 
 def test_speeds_that_floats_mix() -> None:
-    fast, slow = 0.7 * u - 0.2 * v, 0.1 * 3 * u + 0.3 * v  # 0.1*3 is not 0.3 in floats
+    fast, slow = 0.7 * u - 0.2 * v, 0.1 * 3 * u + 0.3 * v  # in floats 0.1*3 is not 0.3
     A = N.orientnew("A", "Axis", [q, N.z])
     B = A.orientnew("B", "Axis", [p, A.x])
     A.set_ang_vel(N, fast * N.z)
@@ -206,7 +206,7 @@ x, y, th, w, s = me.dynamicsymbols("x y th w s")
 
 
 def wheel(spin: Any, speeds: list[Any], moments: Any = (J / 2, J, J / 2)) -> Any:
-    """A wheel whose frame has an angular velocity alone, against a carriage on a blade."""
+    """Makes a wheel on a carriage with a blade; the frame of the wheel has only an angular velocity, relative to the carriage."""
     B = N.orientnew("B", "Axis", [th, N.z])
     B.set_ang_vel(N, w * N.z)
     C = O.locatenew("C", x * N.x + y * N.y + r * N.z)
@@ -234,7 +234,7 @@ SPINS: dict[str, tuple[Any, list[Any]]] = {
 @pytest.mark.parametrize("name", SPINS)
 def test_spins_of_wheels(name: str) -> None:
     model = agree(wheel(*SPINS[name]), NUMBERS)
-    assert ("turn_" in model.text) == ("v" in name)  # no coordinates have the rate v of a blade
+    assert ("turn_" in model.text) == ("v" in name)  # v is the speed along a blade and the rate of no coordinate
 
 
 def test_moments_of_a_wheel_are_equal_by_value() -> None:
@@ -259,7 +259,7 @@ def test_a_sphere_whose_frame_has_only_an_angular_velocity() -> None:
 
 
 def test_a_moment_about_a_pivot_that_is_not_the_mass_centre() -> None:
-    """SymPy moves (0, 0, J) to the mass centre, where moments that do not act are negative."""
+    """SymPy transforms the moments (0, 0, J) to the mass centre, where those that do not act become negative."""
     B = N.orientnew("B", "Axis", [q, N.z])
     B.set_ang_vel(N, u * N.z)
     G = O.locatenew("G", l * B.y)
@@ -274,7 +274,7 @@ def test_a_moment_about_a_pivot_that_is_not_the_mass_centre() -> None:
 
 
 def test_an_inertia_along_the_axes_of_another_frame_is_constant() -> None:
-    """The rolling disc of SymPy's pages has the inertia of its disc along a frame that does not turn with the disc."""
+    """The rolling disc of SymPy's documentation has its inertia along a frame that does not turn with the disc."""
     disc, values = rolling_disc()
     model = an.from_sympy(disc, values=values, initial={"q2": 0.3})
     assert "cos" not in next(line for line in model.text.splitlines() if line.startswith("inertia"))

@@ -1,4 +1,4 @@
-"""Functions of SymPy that come in by identities, as of real numbers; and what ``from_sympy`` says to mistakes in its arguments."""
+"""Functions of SymPy that are imported by identities of real numbers, and the messages of ``from_sympy`` for wrong arguments."""
 
 import math
 import warnings
@@ -18,7 +18,7 @@ N = me.ReferenceFrame("N")
 
 
 def pushed(force: Any) -> Any:
-    """A particle on a line."""
+    """Makes a particle on a line under a force."""
     P = me.Point("P")
     P.set_vel(N, v * N.x)
     method = me.KanesMethod(N, [x], [v], kd_eqs=[x.diff(t) - v])
@@ -41,7 +41,7 @@ POTENTIALS: dict[str, Any] = {
 @pytest.mark.parametrize("name", POTENTIALS)
 @pytest.mark.parametrize("by", ["a Lagrangian", "a body"])
 def test_coordinates_are_real(name: str, by: str) -> None:
-    """SymPy has no derivative of Abs(x) unless x is real; its own equations are here those of a real x."""
+    """SymPy cannot differentiate Abs(x) unless x is real, so its equations are derived for a real x."""
     real = me.dynamicsymbols("x", real=True)
     expected: Any = None
     for q in (real, x):
@@ -104,7 +104,7 @@ def test_mistakes_are_named(given: dict[str, Any], kind: type[Exception], said: 
 
 
 def test_values_that_are_no_mistakes() -> None:
-    other = sm.Symbol("other")  # of constants that several systems share
+    other = sm.Symbol("other")  # a value for a symbol of another system is allowed
     values: Any = {m: np.array(1.5), "k": 2, "F": 3, other: 1}
     model = an.from_sympy(pushed(F - k * x), values=values, initial={"x'": 1, v: 1.0})
     assert model.evaluate().accelerations == {"x''": 2} and model.evaluate().qdot == {"x'": 1}
@@ -143,7 +143,7 @@ def test_two_symbols_of_one_name() -> None:
 
 
 def test_symbols_of_an_orientation_have_values() -> None:
-    """A tilt stands in no velocity and no load, and has a value all the same."""
+    """A tilt occurs in no velocity and no load, but its value is accepted."""
     tilt = sm.Symbol("tilt")
     A, P = N.orientnew("A", "Axis", [tilt, N.z]), me.Point("P")
     P.set_vel(N, v * A.x)

@@ -1,4 +1,4 @@
-"""``Dynamics.torch``: autograd has the derivatives of the compiled function."""
+"""Autograd of ``Dynamics.torch`` gives the derivatives of the compiled function."""
 
 import anholon as an
 import numpy as np

@@ -1,4 +1,4 @@
-// What is drawn of each item of a scene, and its place at a time.
+// The objects that are drawn for the items of a scene, and their places at a time.
 
 import { Group, Matrix4, Mesh, MeshBasicMaterial, SphereGeometry, type Object3D } from 'three';
 import type { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
@@ -10,7 +10,7 @@ import { mixed, type Theme } from './theme.ts';
 
 export interface Shown { traces: boolean; frames: boolean; vectors: Set<string>; scale: number; labels: boolean; grid: boolean }
 
-// Series colours by the order of the bodies; what belongs to a body has its colour.
+// Returns the colour of an item: the series colours go by the order of the bodies, and items of a body have its colour.
 export function color_of(model: SceneModel, item: Item, theme: Theme): string {
   if (item.color && CSS.supports('color', item.color)) return item.color;
   const owner = item.of ?? item.name;
@@ -25,7 +25,7 @@ export function vector_color(what: string, theme: Theme): string {
   return what === 'velocity' ? theme.series[2] : what === 'reaction' ? theme.warn : theme.series[4];
 }
 
-// Length of one unit of each quantity: the larger values of the run come out about as long as a body.
+// Returns the drawn length of one unit of each quantity, so that the larger values of the run are about as long as a body.
 export function vector_scales(model: SceneModel, length: number): Map<string, number> {
   const values = new Map<string, number[]>();
   const arrows = model.items.filter((i) => i.kind === 'vector');
@@ -38,7 +38,7 @@ export function vector_scales(model: SceneModel, length: number): Map<string, nu
   }
   return new Map([...values].map(([what, sizes]) => {
     sizes.sort((a, b) => a - b);
-    // A short peak, as at an impact, must not make all else vanish.
+    // The 97 % quantile: a short peak, as at an impact, must not make all other arrows invisible.
     const high = sizes[Math.floor(0.97 * (sizes.length - 1))] || sizes[sizes.length - 1];
     return [what, high > 0 ? length / high : 0];
   }));
@@ -48,7 +48,7 @@ export interface Actor { item: Item; object: Object3D; update(pose: Pose, time: 
 
 export interface Style { theme: Theme; unit: number; pixel: number; frame: Frame; scales: Map<string, number> }
 
-// Paths are in the frame that is drawn, all else is in the observer's axes.
+// Makes the actors. Paths are in the frame that is drawn, all other objects in the observer's axes.
 export function make_actors(model: SceneModel, style: Style): Actor[] {
   const { theme, unit, pixel } = style;
   const paths = trace_paths(model, style.frame);

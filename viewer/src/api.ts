@@ -1,4 +1,4 @@
-// What the page offers to programs: `anholon render` and the tests drive it through window.anholon.
+// The interface of the page for programs: `anholon render` and the tests use it through window.anholon.
 
 import type { Clock } from './clock.ts';
 import type { RawReport } from './data.ts';
@@ -22,7 +22,7 @@ export interface Handle {
   plots: (Plots | null)[];
   errors: string[];
   ready: Promise<void>;
-  show(data: RawReport, places: () => Places): void;      // in place of what the call before has shown
+  show(data: RawReport, places: () => Places): void;      // replaces what the last call showed
   stage(width?: number, height?: number, frame?: Frame): void;
 }
 
@@ -37,7 +37,7 @@ export function case_handle(name: string, clock: Clock, model: SceneModel | null
   };
 }
 
-// The picture alone, over the whole window or of the size given; as the moving observer sees it, or an inertial one.
+// Shows the picture alone, over the whole window or with the given size, as the moving or an inertial observer sees it.
 export function stage(player: Player, width?: number, height?: number, frame?: Frame): void {
   let box = document.querySelector<HTMLElement>('body > .anholon-stage');
   if (!box) {

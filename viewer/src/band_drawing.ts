@@ -7,12 +7,12 @@ import { css_rgb, theme } from './theme.ts';
 
 export const mode_names = ['open', 'slips', 'sticks'];
 
-// Open contacts have no colour.
+// Returns the colour of a mode; null for open contacts.
 export function mode_color(mode: number): string | null {
   return mode === 1 ? css_rgb(theme().series[1]) : mode === 2 ? css_rgb(theme().series[2]) : null;
 }
 
-// The first band stands lowest.
+// Draws the bands; the first one is the lowest.
 export function draw_bands(ctx: CanvasRenderingContext2D, box: { left: number; top: number; width: number; height: number },
   bands: Band[], range: [number, number], pixel: number): void {
   const height = 5 * pixel;
@@ -28,7 +28,7 @@ export function draw_bands(ctx: CanvasRenderingContext2D, box: { left: number; t
   });
 }
 
-// Says what the bands mean; null if there are no contacts.
+// Returns the legend of the bands; null if there are no contacts.
 export function bands_key(bands: Band[]): HTMLElement | null {
   if (bands.length === 0) return null;
   const key = (mode: number): HTMLElement => h('span', { class: `mode mode-${mode}` }, mode_names[mode]);

@@ -4,7 +4,7 @@ import type { Band } from './data.ts';
 
 export interface Strip { x: number; width: number; mode: number }
 
-// The strips of a band within a range, in parts of its width.
+// Returns the strips of a band within a range; x and width are fractions of the range.
 export function strips(band: Band, from: number, to: number): Strip[] {
   const part = (t: number): number => (Math.min(to, Math.max(from, t)) - from) / (to - from || 1);
   return band.spans.map(([begin, end, mode]) => ({ x: part(begin), width: part(end) - part(begin), mode })).filter((s) => s.width > 0);

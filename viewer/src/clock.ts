@@ -15,7 +15,7 @@ export class Clock {
     this.rate = comfortable_rate(end - start);
   }
 
-  // Called after each change of time, speed, loop or playing.
+  // `f` is called after each change of time, speed, loop or playing.
   listen(f: () => void): void { this.listeners.push(f); }
   changed(): void { for (const f of this.listeners) f(); }
 
@@ -44,7 +44,7 @@ export class Clock {
   }
 
   private tick(now: number): void {
-    // A page that was in the background goes on where it was.
+    // A page that was in the background continues at its time.
     const elapsed = Math.min(0.1, Math.max(0, (now - this.last) / 1000));
     this.last = now;
     const length = this.end - this.start;
@@ -59,7 +59,7 @@ export class Clock {
   }
 }
 
-// Real time where that is neither over at once nor tiring, else ten seconds for the run.
+// Returns the first speed: real time for runs of 2 to 60 s, else the speed at which the run takes ten seconds.
 export function comfortable_rate(duration: number): number {
   if (!(duration > 0)) return 1;
   return duration >= 2 && duration <= 60 ? 1 : duration / 10;

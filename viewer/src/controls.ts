@@ -1,4 +1,4 @@
-// The bar below the pictures: playing, time, what is shown.
+// The bar below the pictures: playing, time, and the choice of the items that are shown.
 
 import type { Shown } from './actors.ts';
 import type { Clock } from './clock.ts';
@@ -33,7 +33,7 @@ export function play_bar(clock: Clock, unit: string): HTMLElement {
   const said = h('span', { class: 'unseen', 'aria-live': 'polite' });
   const loop = icon_button('loop', 'Start over at the end', () => { clock.loop = !clock.loop; clock.changed(); });
 
-  // A range of step "any" moves by 1 with the arrows, whatever the length of the run.
+  // The arrow keys would move a range of step "any" by 1, whatever the length of the run.
   const step = (e: KeyboardEvent): void => {
     const duration = clock.end - clock.start;
     const by: Record<string, number> = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -20, PageUp: 20 };
@@ -43,7 +43,7 @@ export function play_bar(clock: Clock, unit: string): HTMLElement {
     e.preventDefault();
   };
 
-  // Slow enough for a voice: at most once in two seconds, and in any case where the time comes to rest.
+  // For screen readers: says the time at most once in two seconds, and always when the time stops.
   let timer = 0;
   const say = (): void => {
     if (timer !== 0) return;
@@ -70,7 +70,7 @@ export function play_bar(clock: Clock, unit: string): HTMLElement {
   return h('div', { class: 'play-bar' }, play, slider, h('span', { class: 'time' }, now, of), speed(clock, unit), loop, said);
 }
 
-// Factors of the first speed, and the true ones as texts: 1× is real time for every run.
+// Returns factors of the first speed, with the speeds relative to real time as texts: 1× is real time for every run.
 export function speed_options(rate: number, unit: string): [string, string][] {
   const factors = [0.1, 0.2, 0.5, 1, 2, 5, 10];
   if (!factors.some((f) => Math.abs(f * rate - 1) < 1e-12)) factors.push(1 / rate);

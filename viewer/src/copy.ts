@@ -7,7 +7,7 @@ async function to_clipboard(text: string): Promise<boolean> {
     await navigator.clipboard.writeText(text);
     return true;
   } catch {
-    return by_selection(text);        // pages from file:// may have no clipboard, or no leave to use it
+    return by_selection(text);        // pages from file:// may have no clipboard, or no permission to use it
   }
 }
 
@@ -18,7 +18,7 @@ function by_selection(text: string): boolean {
   document.body.append(area);
   area.select();
   let done = false;
-  try { done = document.execCommand('copy'); } catch { /* said below */ }
+  try { done = document.execCommand('copy'); } catch { /* reported below */ }
   area.remove();
   if (focused instanceof HTMLElement) focused.focus({ preventScroll: true });
   return done;
@@ -39,7 +39,7 @@ function button_for(equation: HTMLElement): HTMLButtonElement {
   return button;
 }
 
-// The equation may scroll sideways, so the button stands beside it and not within.
+// Adds a button beside each equation, not inside, since the equation may scroll sideways.
 export function add_copy_buttons(root: ParentNode = document): void {
   for (const equation of root.querySelectorAll<HTMLElement>('.equation[data-latex]')) {
     const button = button_for(equation);

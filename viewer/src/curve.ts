@@ -1,11 +1,11 @@
-// A column as a path on the plot, and the range that the visible columns need. uPlot has one list of times for all its
-// series; ours may each have their own, so uPlot draws axes and takes zooms, and the curves come from here.
+// A column as a path on the plot, and the range of the visible columns. uPlot has one list of times for all its series. Here
+// each column may have its own list, so uPlot draws the axes and handles zooms, and this file draws the curves.
 
 import type uPlot from 'uplot';
 import { interval } from './interpolate.ts';
 import type { Column } from './data.ts';
 
-// Rows from the last before `from` to the first after `to`, so that curves go on to the border.
+// Returns the rows from the last one before `from` to the first one after `to`, so that curves reach the border.
 export function rows_within(t: Float64Array, from: number, to: number): [number, number] {
   if (t.length < 2) return [0, t.length - 1];
   return [interval(t, from, 'before'), Math.min(t.length - 1, interval(t, to) + 1)];
@@ -13,7 +13,7 @@ export function rows_within(t: Float64Array, from: number, to: number): [number,
 
 const drawable = (y: number, log: boolean): boolean => Number.isFinite(y) && (!log || y > 0);
 
-// Least and greatest drawable value with from <= t <= to; null where there is none.
+// Returns the least and greatest drawable value with from <= t <= to; null if there is none.
 export function value_range(columns: Column[], from: number, to: number, log: boolean): [number, number] | null {
   let low = Infinity, high = -Infinity;
   for (const { t, data } of columns) {
@@ -23,7 +23,7 @@ export function value_range(columns: Column[], from: number, to: number, log: bo
       if (data[i] < low) low = data[i];
       if (data[i] > high) high = data[i];
     }
-    // Zoomed in between two rows: they bound what is seen.
+    // If the range lies between two rows, their values bound the visible part.
     for (const i of low <= high ? [] : [first, last]) {
       if (i < 0 || !drawable(data[i], log)) continue;
       low = Math.min(low, data[i]);
@@ -35,8 +35,8 @@ export function value_range(columns: Column[], from: number, to: number, log: bo
 
 interface Pen { moveTo(x: number, y: number): void; lineTo(x: number, y: number): void }
 
-// Gaps where there is no value, and between the two sides of a jump. Of many rows in one pixel column only the first, the
-// least, the greatest and the last are drawn, which gives the same picture.
+// Adds the curve of a column to a path, with gaps where there is no value and between the two sides of a jump. Of many rows
+// in one pixel column only the first, the least, the greatest and the last are drawn, which gives the same picture.
 export function trace_curve(path: Pen, column: Column, rows: [number, number], log: boolean, x_of: (t: number) => number, y_of: (y: number) => number): void {
   const { t, data } = column;
   let start = -1;
@@ -55,7 +55,7 @@ export function trace_curve(path: Pen, column: Column, rows: [number, number], l
 function piece(path: Pen, t: Float64Array, y: Float64Array, first: number, last: number, x_of: (t: number) => number, y_of: (y: number) => number): void {
   const x0 = x_of(t[first]);
   const dash = t.length === 1 ? 6 : 1.5;
-  path.moveTo(first === last ? x0 - dash : x0, y_of(y[first]));           // a value alone, between gaps or in all, is a dash
+  path.moveTo(first === last ? x0 - dash : x0, y_of(y[first]));           // a single value between gaps is drawn as a dash
   if (first === last) { path.lineTo(x0 + dash, y_of(y[first])); return; }
   if (last - first < 2.5 * (x_of(t[last]) - x0)) {
     for (let i = first + 1; i <= last; ++i) path.lineTo(x_of(t[i]), y_of(y[i]));
@@ -74,7 +74,7 @@ function piece(path: Pen, t: Float64Array, y: Float64Array, first: number, last:
   }
 }
 
-// For uPlot: the curve of a column in canvas pixels.
+// Returns the path builder that uPlot calls for a column, in canvas pixels.
 export function curve_paths(column: Column, log: boolean, range: () => [number, number]): uPlot.Series.PathBuilder {
   return (u) => {
     const path = new Path2D();

@@ -1,16 +1,16 @@
-// The data of a report page as the C++ side writes it (CONTRACT.md), and what the viewer makes of it.
+// The data of a report page as the C++ side writes them (CONTRACT.md), and the decoded data that the viewer uses.
 
 import type { RawScene } from './scene.ts';
 
 export interface RawColumn { name: string; html: string; unit: string; group: string; data: string; t?: string }
-// columns: how many the run has; fewer may be plotted.
+// columns: the number of columns of the group in the run; fewer may be plotted.
 export interface Group { id: string; title: string; log: boolean; columns?: number }
 export interface Event { t: number; name: string }
-// The modes of a contact: spans from a time to a time, each with 0 open, 1 slips or 2 sticks.
+// The modes of a contact: spans [from, to, mode] of time with the mode 0 (open), 1 (slips) or 2 (sticks).
 export interface Band { name: string; spans: [number, number, number][] }
 export interface RawCase {
   name: string; rows: number; shown: number; t: string; unit: string;
-  caution?: string; rough?: boolean;        // what is not drawn right, and whether paths would be wrong
+  caution?: string; rough?: boolean;        // a warning on what the picture shows wrongly, and whether paths would be wrong
   columns: RawColumn[]; groups: Group[];
   frames: null | { t: string; data: Record<string, string> };
   events: Event[]; bands?: Band[]; scene: null | RawScene;
@@ -44,7 +44,7 @@ export function decode(base64: string): Float64Array {
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
   const view = new DataView(bytes.buffer);
-  // As decimals of the digits that a float has: 1.2 and not 1.2000000476837158.
+  // Floats become the decimals with the 7 digits that they have: 1.2, not 1.2000000476837158.
   if (single) return Float64Array.from({ length: bytes.length / 4 }, (_, k) => Number(view.getFloat32(4 * k, true).toPrecision(7)));
   if (little) return new Float64Array(bytes.buffer);
   return Float64Array.from({ length: bytes.length / 8 }, (_, k) => view.getFloat64(8 * k, true));
@@ -76,7 +76,7 @@ export function read_case(raw: RawCase): Case {
     if (value.length !== frames.length) throw new Error(`column ${k} has ${value.length} values at ${frames.length} frames`);
     return { t: frames, value };
   };
-  // Columns with times of their own, as the sizes of the steps, do not count where the rows are.
+  // If the case has common times, columns with times of their own, such as the step sizes, do not change start and end.
   const [start, end] = extent(times.length > 0 ? [times, frames] : [frames, ...columns.map((c) => c.t)]);
   return {
     name: raw.name ?? '', rows: raw.rows, shown: raw.shown, unit: raw.unit ?? '', start, end,
@@ -85,7 +85,7 @@ export function read_case(raw: RawCase): Case {
   };
 }
 
-// Where every column has times of its own, `t` may be empty.
+// Returns the common times, or if they are empty the longest list of times of a column.
 function longest(times: Float64Array, columns: Column[]): Float64Array {
   return times.length > 0 ? times : columns.reduce((best, c) => (c.t.length > best.length ? c.t : best), times);
 }

@@ -14,7 +14,7 @@ export function h<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Att
   return element;
 }
 
-// On a grid of 16, strokes of the text's colour.
+// Paths of the icons on a grid of 16 x 16, drawn as strokes in the colour of the text.
 const paths = {
   play: 'M5 3.2v9.6l8-4.8z', pause: 'M5 3.5v9M11 3.5v9', loop: 'M3 8a5 5 0 0 1 8.6-3.5L13 6M13 3v3h-3M13 8a5 5 0 0 1-8.6 3.5L3 10M3 13v-3h3',
   reset: 'M2.5 6V2.5H6M10 2.5h3.5V6M13.5 10v3.5H10M6 13.5H2.5V10M8 8h.01', image: 'M2.5 3.5h11v9h-11zM2.5 11l3.5-3.5 3 3 2-2 2.5 2.5M10.6 6.2h.01',

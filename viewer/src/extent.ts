@@ -1,4 +1,4 @@
-// How large a scene is and how far it goes, for the first look at it.
+// The size of a scene and the range of its motion, for the first position of the camera.
 
 import { radius } from './shapes.ts';
 import type { Frame, Item, SceneModel } from './scene.ts';
@@ -7,14 +7,14 @@ import type { Vector } from './rotation.ts';
 export interface Extent {
   points: { at: Vector; r: number }[];     // balls that the motion fills
   center: Vector;
-  radius: number;                          // of a ball about the centre that holds them all
-  unit: number;                            // size of the largest body, or a length to draw sizeless things by
-  far: boolean;                            // it goes so far that the bodies would be specks: the camera should follow
+  radius: number;                          // of a ball about the centre that contains all these balls
+  unit: number;                            // size of the largest body, or if no body has a size, a length for drawing
+  far: boolean;                            // the range is so large that bodies would be tiny: the camera should follow one
 }
 
 export const placed = (item: Item): boolean => item.kind === 'body' || item.kind === 'point' || item.kind === 'frame';
 
-// Math.max(...) takes some ten thousand numbers at most, and a long chain has more points than that.
+// Math.max(...) accepts some ten thousand numbers at most, and a long chain has more points.
 function greatest<T>(list: T[], of: (element: T) => number): number {
   let most = -Infinity;
   for (const element of list) most = Math.max(most, of(element));
@@ -50,8 +50,8 @@ export function extent(model: SceneModel, frame: Frame): Extent {
   return { points, center, radius: ball, unit, far: largest > 0 && ball > 30 * largest };
 }
 
-// A motion that grows without bound reaches in its last moments places against which all before is a speck: these do not
-// count for the look. A tenth of the balls at most, and only where they are a thousand times as far as the others.
+// Removes the balls of the last moments of a motion that grows without bound, beside which the rest would be tiny. It removes
+// a tenth of the balls at most, and only if some are a thousand times as far as the others.
 export function leave_runaways(points: Extent['points'], least: number): void {
   if (points.length < 10) return;
   const typical = (values: number[], part: number): number => [...values].sort((a, b) => a - b)[Math.floor(part * (values.length - 1))];
@@ -64,7 +64,7 @@ export function leave_runaways(points: Extent['points'], least: number): void {
   points.length = kept;
 }
 
-// Radius about a followed item within which what moves with it stays, in bounds that keep it in sight.
+// Returns the radius about a followed item in which the other items stay, limited so that the item remains visible.
 export function company(model: SceneModel, name: string, unit: number): number {
   const k = model.items.findIndex((i) => i.name === name && placed(i));
   let reach = 0;

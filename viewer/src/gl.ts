@@ -1,5 +1,5 @@
 // One WebGL context for the whole page. Every view has a 2D canvas of its own, into which its picture is copied: browsers
-// allow only some sixteen contexts, and what stands in a 2D canvas can be printed and saved, labels included.
+// allow only about sixteen contexts, and a 2D canvas can be printed and saved with its labels.
 
 import { PCFShadowMap, WebGLRenderer, type Camera, type Scene } from 'three';
 
@@ -21,7 +21,7 @@ export function gl(): WebGLRenderer | null {
 }
 
 const restored = new Set<() => void>();
-// Returns what ends the listening.
+// Calls `f` when the context is restored. Returns the function that ends this.
 export function on_restored(f: () => void): () => void {
   restored.add(f);
   return () => { restored.delete(f); };

@@ -3,7 +3,7 @@
 import { BufferAttribute, BufferGeometry, Color, Group, LineBasicMaterial, LineSegments, Mesh, PlaneGeometry, ShadowMaterial } from 'three';
 import { nice } from './format.ts';
 
-const cells = 30;          // on each side of the middle
+const cells = 30;          // on each side of the centre
 
 export class Ground {
   readonly group = new Group();
@@ -23,7 +23,7 @@ export class Ground {
 
   show(lines: boolean): void { this.grid.visible = lines; }
 
-  // `span`: how much of the plane is in view.
+  // `span`: the length of the visible part of the plane.
   follow(x: number, y: number, span: number): void {
     if (!(span > 0) || !Number.isFinite(x + y)) return;
     this.spacing = nice(span / 14);

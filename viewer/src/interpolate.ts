@@ -1,7 +1,7 @@
 // Values between rows: the polynomial through value, first and second derivative at both ends of the interval (quintic
-// Hermite), through value and first derivative (cubic), or the straight line, as far as derivatives are there and finite.
+// Hermite), through value and first derivative (cubic), or the straight line, depending on which derivatives exist and are finite.
 //
-// Rows of equal t are the two sides of a jump. No interval lies between them, so nothing is ever mixed across a jump.
+// Rows of equal t are the two sides of a jump. No interval lies between them, so the interpolation never crosses a jump.
 
 import type { Samples } from './data.ts';
 
@@ -10,10 +10,10 @@ export interface Input extends Samples {
   d2: Float64Array | null;
 }
 
-// At a jump: which of its two sides. Everywhere else both are the same.
+// The side of a jump. At other times both sides are the same.
 export type Side = 'before' | 'after';
 
-// The i with t[i] <= time < t[i+1] (before: t[i] < time <= t[i+1]), kept within 0 ... t.length - 2.
+// Returns the i with t[i] <= time < t[i+1] (before: t[i] < time <= t[i+1]), kept within 0 ... t.length - 2.
 export function interval(t: Float64Array, time: number, side: Side = 'after'): number {
   let low = 0, high = t.length;
   while (low < high) {                                   // number of rows at or before time (before: strictly before)
@@ -31,7 +31,7 @@ export function interpolate(input: Input, time: number, side: Side = 'after'): n
   if (time > t[n - 1]) return value[n - 1];
   const i = interval(t, time, side);
   const h = t[i + 1] - t[i];
-  if (time === t[i + 1]) return value[i + 1];            // stored rows come out bit for bit
+  if (time === t[i + 1]) return value[i + 1];            // stored rows keep their bits
   if (time === t[i] || !(h > 0)) return value[i];
   const s = (time - t[i]) / h;
   const a = value[i], b = value[i + 1];
@@ -48,7 +48,7 @@ export function interpolate(input: Input, time: number, side: Side = 'after'): n
   return a + s * (va + s * (wa / 2 + s * (c3 + s * (c4 + s * c5))));
 }
 
-// The stored row nearest to a time. Of two rows with equal t the one on the side from which time is approached.
+// Returns the stored row nearest to a time; of two rows with equal t, the one on the side from which `time` is approached.
 export function nearest(t: Float64Array, time: number): number {
   const n = t.length;
   if (n < 2 || time <= t[0]) return n === 0 ? -1 : 0;

@@ -1,4 +1,4 @@
-// Names beside bodies and points, drawn into the picture so that they are in what is saved and printed.
+// Names beside bodies and points, drawn into the picture so that saved and printed pictures have them.
 
 import { css_rgb, type Theme } from './theme.ts';
 
@@ -17,7 +17,7 @@ export function draw_labels(pen: CanvasRenderingContext2D, labels: Label[], pixe
     const text = letters.length > longest ? letters.slice(0, longest - 1).join('') + '\u2026' : label.text;
     const width = pen.measureText(text).width;
     const x = Math.min(Math.max(label.x - width / 2, 6 * pixel), pen.canvas.width - width - 6 * pixel);
-    // Away from what it names until nothing is covered; a crowd beyond that is left without names.
+    // A label moves away from its item until it covers no other label; after four places it is left out.
     const y = [0, 1, 2, 3].map((k) => label.y + (label.below ? 1 : -1) * size * (0.9 + 1.25 * k)).find((top) => !taken.some(
       ([l, t, r, b]) => x < r && x + width > l && top - size / 2 < b && top + size / 2 > t));
     if (y === undefined || label.x < 0 || label.x > pen.canvas.width || y < 0 || y > pen.canvas.height) continue;

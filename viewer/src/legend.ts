@@ -1,4 +1,4 @@
-// The columns of a plot: what is drawn, in which colour, and the value of each at the cursor.
+// The legend of a plot: which columns are drawn, their colours, and their values at the cursor.
 
 import type { Column } from './data.ts';
 import { h } from './dom.ts';
@@ -41,7 +41,7 @@ export class Legend {
     return { entry, button, swatch, value: h('span', { class: 'value' }), at: h('span', { class: 'at' }) };
   }
 
-  // Colours and what is pressed.
+  // Updates the colours and the state of the buttons.
   update(): void {
     for (const { entry, button, swatch } of this.rows) {
       button.setAttribute('aria-pressed', String(entry.shown));
@@ -49,7 +49,7 @@ export class Legend {
     }
   }
 
-  // `rows`: the row of each column, -1 for none; `time`: that of the plot's cursor, said again where a column has another.
+  // Shows values. `rows`: the row of each column, -1 for none; `time`: the time of the cursor; other times are shown beside values.
   read(rows: number[], time: number): void {
     this.rows.forEach(({ entry, value, at }, k) => {
       const row = rows[k];

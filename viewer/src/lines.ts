@@ -18,13 +18,13 @@ export function segments(points: Float32Array, color: string, width: number): Li
   return lines;
 }
 
-// The graphics card keeps ends in single precision: they are relative to an origin near them, which is subtracted before.
-// A value beyond this, where a motion grows without bound, is not drawn: the squares of lengths must be floats as well.
+// The graphics card has single precision, so the ends of segments are stored relative to an origin near them. Coordinates
+// beyond this limit, in motions that grow without bound, are not drawn, since the squares of lengths must be floats, too.
 const farthest = 1e18;
 
 export function near(origin: Vector, at: Vector): Vector { return at.map((x, k) => x - origin[k]) as Vector; }
 
-// The middle of the box around the points; those without a value, or beyond all pictures, do not count.
+// Returns the middle of the box around the points, without those that have no value or lie beyond the limit.
 export function middle(points: Vector[]): Vector {
   const known = points.filter((p) => p.every((x) => Math.abs(x) < farthest));
   if (known.length === 0) return [0, 0, 0];
@@ -37,7 +37,7 @@ export function middle(points: Vector[]): Vector {
 
 const drawable = (at: Vector): boolean => at.every((x) => Math.abs(x) < farthest);
 
-// The ends of each segment along a chain of points, relative to the origin; where one has no value there is a gap.
+// Returns the ends of the segments along a chain of points, relative to the origin. A point without a value leaves a gap.
 export function chain(points: Vector[], origin: Vector): Float32Array {
   const out: number[] = [];
   for (let i = 1; i < points.length; ++i) {
@@ -47,7 +47,7 @@ export function chain(points: Vector[], origin: Vector): Float32Array {
   return new Float32Array(out);
 }
 
-// The path of a point over the whole run: faint, and strong up to the present.
+// The path of a point over the whole run in a faint colour, and in a strong one up to the present time.
 export class Trace {
   readonly group = new Group();
   private readonly whole: LineSegments2;
@@ -57,13 +57,13 @@ export class Trace {
   private readonly origin: Vector;
   private readonly times: number[] = [];        // [start, end] of each segment
 
-  // `faint` is a colour and no transparency, which would show the joints of the segments.
+  // `faint` is an opaque colour, since a transparent one would show where segments overlap.
   constructor(path: { time: number; at: Vector }[], color: string, faint: string, width: number) {
     const out: number[] = [];
     this.origin = middle(path.map((p) => p.at));
     for (let i = 1; i < path.length; ++i) {
       const a = near(this.origin, path[i - 1].at), b = near(this.origin, path[i].at);
-      if (!(path[i].time > path[i - 1].time) || !drawable(a) || !drawable(b)) continue;      // the two sides of a jump are not joined
+      if (!(path[i].time > path[i - 1].time) || !drawable(a) || !drawable(b)) continue;      // no segment joins the two sides of a jump
       out.push(...a, ...b);
       this.starts.push(a);
       this.times.push(path[i - 1].time, path[i].time);
@@ -92,7 +92,7 @@ export class Trace {
   }
 }
 
-// Drawn over bodies, since a reaction starts within one.
+// An arrow. By default it is drawn over bodies, since a reaction starts inside one.
 export class Arrow {
   readonly group = new Group();
   private readonly shaft: Mesh;

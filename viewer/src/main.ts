@@ -1,4 +1,4 @@
-// Finds the places that the page has for the viewer, and fills them.
+// Finds the elements of the page that are meant for the viewer, and fills them.
 
 import './viewer.css';
 import { case_handle, stage, type Handle } from './api.ts';
@@ -24,7 +24,7 @@ function raw_report(errors: string[]): RawReport | null {
   } catch (e) { errors.push(`The data of this page cannot be read: ${(e as Error).message}`); return null; }
 }
 
-// What cannot be shown says why, where it would have been; the rest of the page works.
+// Runs `f`. An error is shown at `place`, and the rest of the page works; the result is then null.
 function attempt<T>(errors: string[], place: HTMLElement | null, what: string, f: () => T): T | null {
   try { return f(); } catch (e) {
     const text = `${what}: ${(e as Error).message}`;

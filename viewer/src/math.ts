@@ -1,5 +1,5 @@
-// Presentation MathML of the data, put into the page element by element. The data of a page are its author's; whoever
-// reads it should not have to trust them with scripts, so nothing but formula markup passes.
+// Inserts presentation MathML of the data into the page element by element. Readers need not trust the author of the data, so
+// only markup of formulas is accepted, and no scripts.
 
 const elements = new Set(['math', 'mrow', 'mi', 'mn', 'mo', 'ms', 'mtext', 'mspace', 'msub', 'msup', 'msubsup', 'mover', 'munder',
   'munderover', 'mfrac', 'msqrt', 'mroot', 'mtable', 'mtr', 'mtd', 'mstyle', 'mpadded', 'mphantom', 'mmultiscripts', 'mprescripts']);
@@ -20,7 +20,7 @@ function copied(source: Node): Node | null {
   return target;
 }
 
-// The formula, or the plain name where there is none.
+// Returns the formula, or the plain name if there is no formula.
 export function formula(html: string, name: string): Node {
   const math = html ? new DOMParser().parseFromString(html, 'text/html').querySelector('math') : null;
   return (math && copied(math)) ?? document.createTextNode(name);

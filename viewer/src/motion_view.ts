@@ -1,5 +1,4 @@
-// The player and the plots of a motion in places that get another motion later: at the same time, with the camera where the
-// reader has put it.
+// The player and the plots of a motion in places that may show another motion later. The time and the camera are then kept.
 
 import { Clock } from './clock.ts';
 import { read_report, type RawReport } from './data.ts';
@@ -15,7 +14,7 @@ export class MotionView {
   private player: Player | null = null;
   private plots: Plots | null = null;
 
-  // Shows the first case of the data. `places` is called when the motion before is taken away, and makes room for the new one.
+  // Shows the first case of the data. `places` is called after the plots of the last motion are closed, and returns the new places.
   show(raw: RawReport, places: () => Places): void {
     const look = this.player?.look ?? null, { time, playing } = this.clock, before = this.player;
     this.plots?.close();
@@ -34,6 +33,6 @@ export class MotionView {
       if (playing) this.clock.play();
       this.player?.wake();
     } catch (e) { plots.replaceChildren(h('p', { class: 'sorry' }, `It cannot be shown: ${(e as Error).message}`)); }
-    before?.close();          // after the new one is drawn, which can use its shaders
+    before?.close();          // closed after the new player is drawn, which can reuse the shaders
   }
 }

@@ -1,4 +1,4 @@
-// The player of one case: its pictures, the bars below them, keys.
+// The player of one case: its pictures, the bars below them, and keys.
 
 import type { Shown } from './actors.ts';
 import type { Clock } from './clock.ts';
@@ -19,8 +19,8 @@ export class Player {
   private active: View[] = [];
   private follow = '';
   private visible = false;
-  private missed = true;         // something changed that is not drawn yet
-  private readonly ends: (() => void)[] = [];     // what close() undoes
+  private missed = true;         // a change is not drawn yet
+  private readonly ends: (() => void)[] = [];     // functions that close() calls
 
   constructor(readonly place: HTMLElement, private readonly data: Case, readonly model: SceneModel, private readonly clock: Clock) {
     const kinds = new Set(model.items.map((i) => i.kind));
@@ -47,7 +47,7 @@ export class Player {
     this.set_follow(this.first_follow());
     clock.listen(() => this.redraw());
     this.ends.push(on_theme(() => { for (const v of this.made.values()) if (v.ready) { v.build(); v.draw(); } }), on_restored(() => this.redraw()));
-    // beforeprint changes the theme first; pictures that were never in sight are drawn for the paper.
+    // The theme changes before this listener runs. Pictures that were never visible are drawn for the paper.
     const waking = (): void => this.wake();
     addEventListener('beforeprint', waking);
     const sized = new ResizeObserver(() => { if (this.visible) for (const v of this.active) v.resize(); });
@@ -60,18 +60,18 @@ export class Player {
     this.ends.push(() => removeEventListener('beforeprint', waking), () => sized.disconnect(), () => seen.disconnect());
   }
 
-  // For a place that gets another player: gives back what the page and the graphics card hold for this one.
+  // Frees the listeners of the page and the memory of the graphics card, so that the place can get another player.
   close(): void {
     for (const end of this.ends) end();
     for (const v of this.made.values()) v.close();
     this.visible = false;
   }
 
-  // Where the reader has put the camera of the observer's view; null if it was not moved.
+  // The camera of the observer's view as the reader has moved it; null if it was not moved.
   get look(): Look | null { return this.made.get('observer')?.look ?? null; }
   set look(look: Look | null) { if (look) this.view('observer').look = look; }
 
-  // Built when first seen: a page may have many cases. What is drawn and has not changed since is not drawn again.
+  // Builds views when they are first visible, since a page may have many cases, and draws those that have changed.
   wake(): void {
     for (const v of this.active) {
       const due = this.missed || !v.ready;
@@ -81,7 +81,7 @@ export class Player {
     this.missed = false;
   }
 
-  // At once, for whoever takes a picture of the page right after.
+  // Draws at once, so that a screenshot right after the call is up to date.
   draw_now(): void { for (const v of this.active) v.draw(); }
 
   private redraw(): void {
@@ -107,11 +107,11 @@ export class Player {
     this.views.dataset.count = String(frames.length);
     this.views.replaceChildren(...this.active.map((v) => h('div', { class: 'view-box' }, v.canvas, v.note,
       this.model.motion ? h('span', { class: 'note frame-note' }, v.frame === 'observer' ? 'moving observer' : 'inertial frame') : null)));
-    this.missed = true;          // while a view is not shown, it misses changes
+    this.missed = true;          // a view that is not shown misses changes
     if (this.visible) this.wake();
   }
 
-  // A body that goes far beyond its own size would be a speck: follow it, unless the model says otherwise.
+  // Returns the item to follow first: that of the model, else the first one if the motion goes so far that bodies would be tiny.
   private first_follow(): string {
     const { follow, eye } = this.model.camera;
     if (follow && this.followable().some(([name]) => name === follow)) return follow;

@@ -11,7 +11,7 @@ import { Legend, type Entry } from './legend.ts';
 import { css_rgb, theme } from './theme.ts';
 import { beside, decades, decades_around, increments, multiples, offset_of, power_label, powers, tick_labels, type Offset } from './ticks.ts';
 
-// Where the reader points: a time, and the row of a list of times where the keyboard chose one side of a jump.
+// The place to which the reader points: a time, and for the keyboard the row of a list of times, which tells the sides of a jump.
 export interface Cursor { time: number; t?: Float64Array; row?: number }
 
 export interface Owner {
@@ -22,7 +22,7 @@ export interface Owner {
   seek(time: number): void;
 }
 
-const initially = 8;           // columns shown at first, and series colours
+const initially = 8;           // the number of columns shown at first, and of series colours
 const dashes = [undefined, [6, 3], [2, 2.5], [8, 3, 2, 3]];
 
 export class Plot {
@@ -37,7 +37,7 @@ export class Plot {
   private readonly line = h('div', { class: 'cursor-line', hidden: true });
   private readonly present = h('div', { class: 'present-line' });
   private readonly dots: HTMLElement[];
-  private u: uPlot | null = null;         // made when the plot is first seen: a page may have many
+  private u: uPlot | null = null;         // made when the plot is first visible, since a page may have many plots
   private width = 0;
   private offset: Offset | null = null;
 
@@ -65,7 +65,7 @@ export class Plot {
     this.resize(this.width || this.chart_width);
   }
 
-  // uPlot needs data to know that there are some; the curves are ours.
+  // Dummy data for uPlot, which does not draw the curves but needs data.
   private empty(): uPlot.AlignedData { return [[this.data.start, this.data.end], ...this.entries.map(() => [null, null])] as uPlot.AlignedData; }
 
   private options(): uPlot.Options {
@@ -76,7 +76,7 @@ export class Plot {
     const axis = { stroke: () => css_rgb(theme().quiet), font: '12px system-ui, sans-serif', incrs: increments, splits, ticks: { show: false }, border: { show: true, stroke: () => css_rgb(theme().line), width: 1 } };
     return {
       width: 600, height: 220, legend: { show: false },
-      padding: [8, 28, 0, 0],      // half of the longest label of a time stands right of the axis
+      padding: [8, 28, 0, 0],      // the right margin holds half of the longest label of a time
       cursor: { x: false, y: false, points: { show: false }, drag: { x: true, y: false, setScale: false, dist: 5 },
         bind: { dblclick: () => () => { this.owner.zoom(null); return null; } } },
       scales: {
@@ -108,7 +108,7 @@ export class Plot {
     if (!found) return log ? [1e-16, 1] : [0, 1];
     let [low, high] = found;
     if (log) return decades_around(low, high);
-    // Ticks finer than the digits of a double would all read alike.
+    // Finer ticks would have equal labels, as a double has no more digits.
     const least = 4e-14 * Math.max(Math.abs(low), Math.abs(high));
     if (high - low < least) { const middle = (low + high) / 2; low = middle - least / 2; high = middle + least / 2; }
     if (high === low) { low -= 1; high += 1; }
@@ -141,7 +141,7 @@ export class Plot {
     this.owner.hover(this.owner.cursor);
   }
 
-  // After the owner's range has changed.
+  // Applies a change of the range of the owner.
   rescale(): void {
     this.base.textContent = '';
     const { u } = this;
@@ -164,7 +164,7 @@ export class Plot {
 
   get chart_width(): number { return this.chart.clientWidth; }
 
-  // What the cursor, or without one the present moment, reads.
+  // Shows the values at the cursor, or without a cursor at the present time.
   point(cursor: Cursor | null, present: number): void {
     const at = cursor ?? { time: present };
     const rows = this.entries.map(({ column }) => (at.t === column.t && at.row !== undefined ? at.row : nearest(column.t, at.time)));
@@ -186,7 +186,7 @@ export class Plot {
     });
   }
 
-  // The line of the player's time.
+  // Moves the line of the present time.
   move(present: number): void { this.place(this.present, present, true); }
 
   private place(element: HTMLElement, time: number, on: boolean): void {

@@ -1,4 +1,4 @@
-// The plots of one case, over one time.
+// The plots of one case over a common range of time.
 
 import { bands_key } from './band_drawing.ts';
 import type { Clock } from './clock.ts';
@@ -7,14 +7,14 @@ import { h } from './dom.ts';
 import { Plot, type Cursor, type Owner } from './plot.ts';
 import { on_theme } from './theme.ts';
 
-const print_width = 680;       // fits between the margins of a page of A4 or letter
+const print_width = 680;       // px; fits between the margins of a page of A4 or letter
 
 export class Plots implements Owner {
   range: [number, number];
   readonly plots: Plot[] = [];
   cursor: Cursor | null = null;
   private pending = false;
-  private readonly ends: (() => void)[] = [];     // what close() undoes
+  private readonly ends: (() => void)[] = [];     // functions that close() calls
   private last_reading = 0;
   private readonly unzoom = h('button', { type: 'button', class: 'plain', hidden: true, click: () => this.zoom(null) }, 'Whole time');
   private readonly stack = h('div', { class: 'stack' });
@@ -26,7 +26,7 @@ export class Plots implements Owner {
     place.append(this.head(), this.stack);
     for (const group of this.groups()) this.plots.push(new Plot(data, group, data.columns.filter((c) => c.group === group.id), this));
     this.stack.append(...this.plots.map((p) => p.element));
-    // All widths before the first plot changes: the browser lays the page out once, and not once for each plot.
+    // All widths are read before the first plot changes, so that the browser lays the page out once, not once for each plot.
     const width = place.clientWidth || 600, widths = this.plots.map((p) => p.chart_width || width);
     this.plots.forEach((p, k) => p.resize(widths[k]));
     this.chips();
@@ -46,7 +46,7 @@ export class Plots implements Owner {
     this.read();
   }
 
-  // For a place that gets other plots.
+  // Removes the listeners, so that the place can get other plots.
   close(): void {
     for (const end of this.ends) end();
     this.closed = true;
@@ -54,7 +54,7 @@ export class Plots implements Owner {
 
   private closed = false;
 
-  // The others one by one when there is nothing else to do.
+  // Makes the remaining plots one by one while the browser is idle.
   private wake_idly(k: number): void {
     if (k >= this.plots.length || this.closed) return;
     const next = (): void => { this.wake(this.plots[k]); this.wake_idly(k + 1); };
@@ -72,9 +72,9 @@ export class Plots implements Owner {
     return end > start ? [start, end] : [start - 0.5, start + 0.5];
   }
 
-  // Those of the data that have columns, and what columns name besides.
+  // Returns the groups of the data that have columns, then other groups that columns name.
   private groups(): Group[] {
-    const used = new Set(this.data.columns.map((c) => c.group).filter((id) => id !== ''));   // without a group: for the picture only
+    const used = new Set(this.data.columns.map((c) => c.group).filter((id) => id !== ''));   // columns without a group are for the picture only
     const known = this.data.groups.filter((g) => used.has(g.id));
     const others = [...used].filter((id) => !known.some((g) => g.id === id)).map((id) => ({ id, title: id, log: false }));
     return [...known, ...others];
@@ -117,7 +117,7 @@ export class Plots implements Owner {
     let [from, to] = range ?? [start, end];
     from = Math.max(start, from);
     to = Math.min(end, to);
-    // Closer than this the times of neighbouring pixels are the same double.
+    // In a shorter range the times of neighbouring pixels would be the same double.
     if (!(to - from > 1e-12 * Math.max(Math.abs(start), Math.abs(end)))) return;
     this.range = [from, to];
     this.unzoom.hidden = from === start && to === end;

@@ -5,7 +5,7 @@ import { interval } from './interpolate.ts';
 export type Vector = [number, number, number];
 export type Quaternion = [number, number, number, number];
 
-// On the great circle between two rows, the short way (q and -q are the same rotation).
+// Interpolates on the great circle between two rows, the short way, as q and -q are the same rotation.
 export function slerp(values: Float64Array, i: number, s: number): Quaternion {
   const a: Quaternion = [values[4 * i], values[4 * i + 1], values[4 * i + 2], values[4 * i + 3]];
   const b: Quaternion = [values[4 * i + 4], values[4 * i + 5], values[4 * i + 6], values[4 * i + 7]];
@@ -13,7 +13,7 @@ export function slerp(values: Float64Array, i: number, s: number): Quaternion {
   const turn = dot < 0 ? -1 : 1;
   dot = Math.min(1, Math.abs(dot));
   const angle = Math.acos(dot);
-  // Below this angle sin(angle) loses digits, and the chord is the arc up to its cube.
+  // Below this angle sin(angle) loses digits, and chord and arc differ by the cube of the angle only.
   const [wa, wb] = angle < 1e-4 ? [1 - s, s] : [Math.sin((1 - s) * angle) / Math.sin(angle), Math.sin(s * angle) / Math.sin(angle)];
   const q = a.map((x, k) => wa * x + turn * wb * b[k]);
   const norm = Math.hypot(...q);
@@ -38,7 +38,7 @@ export function placement(motion: Motion, time: number): Placement {
   return { quaternion: slerp(quaternion, i, s), origin: [mix(0), mix(1), mix(2)] };
 }
 
-// v + 2 w (u x v) + 2 u x (u x v)
+// Returns v + 2 w (u x v) + 2 u x (u x v) for q = (w, u).
 export function rotate(q: Quaternion, v: Vector): Vector {
   const [w, x, y, z] = q;
   const c: Vector = [y * v[2] - z * v[1], z * v[0] - x * v[2], x * v[1] - y * v[0]];

@@ -1,5 +1,5 @@
-// Where everything of a scene is at a time: pure numbers, no drawing. The player, the headless recording and the tests
-// all read positions from here.
+// Computes the positions of all items of a scene at a time, without drawing. The player, the headless recording and the tests
+// use these positions.
 
 import { decode, type Case } from './data.ts';
 import { interpolate, type Input, type Side } from './interpolate.ts';
@@ -22,7 +22,7 @@ export interface RawScene {
   items: Item[];
   observer: null | { t: string; quaternion: string; origin: string };
   camera: { eye: Slots3 | null; target: Slots3 | null; up: Vector; flat: boolean; follow: string | null };
-  floor: null | false | { z: number };     // false: no grid either
+  floor: null | false | { z: number };     // false: no floor and no grid
 }
 
 export interface Pose { name: string; kind: Kind; position: Vector; axes: number[] | null; vector?: Vector; points?: Vector[] }
@@ -52,7 +52,7 @@ export class SceneModel {
     for (const item of this.items) this.check(item);
   }
 
-  // A derivative that has other times than its value cannot be used, and the interpolation falls back by one degree.
+  // A derivative whose times differ from those of the value is not used, and the interpolation has a lower degree.
   private input(raw: { column: number; d1?: number; d2?: number }): Input | null {
     if (raw.column < 0) return null;
     const { t, value } = this.data.animated(raw.column);
@@ -81,7 +81,7 @@ export class SceneModel {
 
   private vector3(s: Slots3): Vector { return [this.slots[s[0]], this.slots[s[1]], this.slots[s[2]]]; }
 
-  // In the observer's axes.
+  // Returns the poses of all items in the observer's axes.
   pose(time: number, side: Side = 'after'): Pose[] {
     this.evaluate(time, side);
     return this.items.map((item) => this.pose_of(item));
@@ -108,14 +108,14 @@ export class SceneModel {
     return item.vector ? this.vector3(item.vector) : [0, 0, 0];
   }
 
-  // Three slots of the camera, or null.
+  // Returns the point whose coordinates are three slots of the camera; null without slots.
   point(s: Slots3 | null, time: number): Vector | null {
     if (!s) return null;
     this.evaluate(time, 'after');
     return this.vector3(s);
   }
 
-  // Where the observer is at a time; null without one.
+  // Returns the placement of the observer at a time; null if no observer moves.
   observer(time: number): Placement | null { return this.motion && placement(this.motion, time); }
 
   in_frame(frame: Frame, time: number, v: Vector): Vector {
@@ -123,7 +123,7 @@ export class SceneModel {
     return p ? place(p, v) : v;
   }
 
-  // Times at which a path is drawn: the rows, with intervals subdivided where rows are few; jumps twice.
+  // Returns the times at which a path is drawn: the rows, with subdivided intervals if there are few rows. A jump has two times.
   path_times(at_least = 2000): { time: number; side: Side }[] {
     const t = this.data.frames;
     if (t.length === 0) return [{ time: this.data.start, side: 'after' }];
@@ -137,7 +137,7 @@ export class SceneModel {
     return times;
   }
 
-  // Evenly over the run, for extents and scales.
+  // Returns equally spaced times over the run, for extents and scales.
   sample_times(count = 300): number[] {
     const { start, end } = this.data;
     return Array.from({ length: count }, (_, k) => start + ((end - start) * k) / (count - 1));

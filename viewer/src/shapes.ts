@@ -1,4 +1,4 @@
-// Bodies as they are drawn. All are patterned, so that a turn about their axis of symmetry can be seen.
+// The shapes of bodies. All have a pattern, so that a turn about their axis of symmetry is visible.
 
 import {
   BoxGeometry, BufferAttribute, CircleGeometry, Color, CylinderGeometry, DoubleSide, EdgesGeometry, Group, LineBasicMaterial,
@@ -15,7 +15,7 @@ export function tones(color: string, dark: boolean): Tones {
   return { base, light, mark: base.clone().lerp(new Color('#000000'), 0.55), dark };
 }
 
-// Half the largest dimension.
+// Returns half the largest dimension.
 export function radius(item: Item): number {
   const s = (item.sizes ?? []).map(Math.abs).filter((x) => x > 0 && Number.isFinite(x));
   if (s.length === 0) return 0;
@@ -30,7 +30,7 @@ export function radius(item: Item): number {
   }
 }
 
-// `unit` is a length of the scene: the size of what has none.
+// Makes the shape of a body. `unit` is a length of the scene, the size of bodies without a size.
 export function body(item: Item, unit: number, t: Tones): Object3D {
   const [a, b, c] = (item.sizes ?? []).map(Math.abs);
   const sized = radius(item) > 0;
@@ -48,7 +48,7 @@ export function body(item: Item, unit: number, t: Tones): Object3D {
   }
 }
 
-// A body of which only the place is known, and the axes if it turns.
+// Makes the shape of a body without a size: a ball, with axes if the body turns.
 function point(item: Item, unit: number, t: Tones): Object3D {
   const group = new Group();
   group.add(ball((item.axes ? 0.07 : 0.1) * unit, { ...t, light: t.base }, false));
@@ -62,7 +62,7 @@ function point(item: Item, unit: number, t: Tones): Object3D {
 
 const around = (x: number, y: number, parts: number): number => Math.floor(((Math.atan2(y, x) / (2 * Math.PI) + 1) % 1) * parts);
 
-// Each triangle in the tone that `pick` gives for its centroid.
+// Colours each triangle in the tone that `pick` returns for its centroid.
 function patterned(geometry: BufferGeometry, pick: (x: number, y: number, z: number) => Color, translucent = false): Mesh {
   const flat = geometry.index ? geometry.toNonIndexed() : geometry;
   const p = flat.getAttribute('position');
@@ -82,8 +82,8 @@ function patterned(geometry: BufferGeometry, pick: (x: number, y: number, z: num
   return mesh;
 }
 
-// Quadrants within a rim, and a mark towards the body's x axis. Both faces are patterned by the same rule, so a
-// sector has its tone on both sides.
+// Makes the face of a disc: quadrants within a rim, and a mark towards the body's x axis. Both faces have the same pattern, so
+// that a sector has its tone on both sides.
 function face(R: number, z: number, t: Tones): Mesh[] {
   const quadrant = (x: number, y: number): Color => (around(x, y, 4) % 2 === 0 ? t.base : t.light);
   const parts: [BufferGeometry, (x: number, y: number) => Color, number][] = [
@@ -120,7 +120,7 @@ function ring(R: number, t: Tones): Object3D {
   return group;
 }
 
-// The circle in the middle of the tube has the radius R, the tube r; a mark towards the body's x axis.
+// Makes a torus: the circle in the middle of the tube has the radius R, the tube the radius r. A mark shows the body's x axis.
 function torus(R: number, r: number, t: Tones): Object3D {
   const group = new Group();
   group.add(patterned(new TorusGeometry(R, r, 28, 96), (x, y) => (around(x, y, 12) % 2 === 0 ? t.base : t.light)));
@@ -135,7 +135,7 @@ function ball(R: number, t: Tones, shell: boolean): Object3D {
   return patterned(sphere, shell ? lune : octant, shell);
 }
 
-// The half axes scale the geometry, not the object, whose pose is a rotation.
+// Makes an ellipsoid. The half axes scale the geometry, not the object, whose pose must be a rotation.
 function ellipsoid(a: number, b: number, c: number, t: Tones): Object3D {
   const sphere = new SphereGeometry(1, 64, 40).rotateX(Math.PI / 2).scale(a, b, c);
   sphere.computeVertexNormals();
@@ -151,10 +151,10 @@ function rod(length: number, unit: number, t: Tones): Object3D {
 }
 
 function box(a: number, b: number, c: number, t: Tones): Object3D {
-  const least = 0.01 * Math.max(a, b, c);                // a plate without thickness would show its two faces at once
+  const least = 0.01 * Math.max(a, b, c);                // the two faces of a plate without thickness would overlap
   const geometry = new BoxGeometry(Math.max(a, least), Math.max(b, least), Math.max(c, least), 8);
   const group = new Group();
-  // The end towards the body's x axis is light: which way it looks.
+  // The end towards the body's x axis is light, to show the direction.
   group.add(patterned(geometry, (x) => (x > 0.376 * a ? t.light : t.base)));
   const edges = new LineSegments(new EdgesGeometry(geometry), new LineBasicMaterial({ color: t.mark, transparent: true, opacity: 0.6 }));
   group.add(edges);

@@ -12,7 +12,7 @@ const fallback: Record<string, string> = {
 };
 const series_fallback = ['#1f5fa8', '#c2571a', '#2e7d4f', '#8e3b8a', '#b58900', '#0f7c8a', '#a23b3b', '#5f6368'];
 
-// Any colour that CSS knows, as rgb(): canvas and three.js read fewer notations than the browser.
+// Colours of any CSS notation are converted to rgb(), since canvas and three.js read fewer notations than the browser.
 let pen: CanvasRenderingContext2D | null = null;
 export function rgb(color: string): [number, number, number] {
   pen ??= Object.assign(document.createElement('canvas'), { width: 1, height: 1 }).getContext('2d', { willReadFrequently: true });
@@ -35,7 +35,7 @@ export function mixed(a: string, b: string, part: number): string {
   return `rgb(${p.map((x, k) => Math.round(x + (q[k] - x) * part)).join(', ')})`;
 }
 
-// The element whose custom properties are the colours: the root of a page, or the host of a widget.
+// The element whose custom properties hold the colours: the root of a page, or the host of a widget.
 let source: HTMLElement = document.documentElement;
 export function take_colours_from(element: HTMLElement): void {
   source = element;
@@ -54,7 +54,7 @@ let current: Theme | null = null;
 const listeners = new Set<() => void>();
 
 export function theme(): Theme { return (current ??= read()); }
-// Returns what ends the listening.
+// Calls `f` after each change of the theme. Returns the function that ends this.
 export function on_theme(f: () => void): () => void {
   listeners.add(f);
   return () => { listeners.delete(f); };
@@ -66,7 +66,7 @@ function changed(): void {
   for (const f of listeners) f();
 }
 
-// Checkboxes and lists take the browser's light or dark look.
+// Sets the colour scheme, by which the browser draws checkboxes and lists light or dark.
 function scheme(): void {
   const value = theme().dark ? 'dark' : 'light', { style } = source;
   if (style.getPropertyValue('--v-scheme') !== value) style.setProperty('--v-scheme', value);
@@ -76,7 +76,7 @@ export function watch_theme(): void {
   scheme();
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', changed);
   new MutationObserver(changed).observe(document.documentElement, { attributes: true, attributeFilter: ['data-theme', 'class', 'style'] });
-  // Paper is white. The canvases are raster images, so they are drawn anew before the page goes to the printer.
+  // Paper is white. Canvases are raster images, so they are drawn anew in light colours before the page is printed.
   let before: string | undefined;
   addEventListener('beforeprint', () => { before = document.documentElement.dataset.theme; apply('light'); changed(); });
   addEventListener('afterprint', () => { apply(before); changed(); });

@@ -1,9 +1,9 @@
-// Labels of axes: as many digits as the distance of the ticks needs. Where values differ only in late digits, as an energy
-// does, what they have in common is taken out and said once.
+// Labels of axes have as many digits as the distance of the ticks needs. If values differ in late digits only, as those of an
+// energy, their common part is subtracted and shown once.
 
 export interface Offset { value: number; text: string }
 
-// Null where plain labels are short enough.
+// Returns the common part of the values; null if plain labels are short enough.
 export function offset_of(low: number, high: number): Offset | null {
   const size = Math.max(Math.abs(low), Math.abs(high)), span = high - low;
   if (!(size > 0) || span > 2e-4 * size) return null;
@@ -27,29 +27,29 @@ export function tick_labels(values: (number | null)[], step: number, offset: num
   });
 }
 
-// A step of 2.5 takes a decimal more than one of 2.
+// Returns the number of decimals of a step: a step of 2.5 needs one more than a step of 2.
 function needed(step: number, digits: number): number {
   const rest = step * 10 ** digits;
   return Math.abs(rest - Math.round(rest)) > 1e-6 ? digits + 1 : digits;
 }
 
-// Distances of ticks among which an axis takes the least that leaves room for the labels: all that doubles can have.
+// Distances of ticks in the whole range of doubles. An axis takes the least one that leaves room for the labels.
 export const increments: number[] = Array.from({ length: 614 }, (_, k) => k - 306).flatMap((k) => [1, 2, 2.5, 5].map((m) => Number(`${m}e${k}`)));
 
-// Multiples of the distance within an axis. Counted, since adding a distance to a far larger value does not change it.
+// Returns the multiples of the distance within an axis. They are counted, as adding a distance may not change a far larger value.
 export function multiples(low: number, high: number, step: number): number[] {
   const first = Math.ceil(low / step - 1e-9), count = Math.floor(high / step + 1e-9) - first + 1;
   if (!(count > 0) || count > 1000) return [];
   return Array.from({ length: count }, (_, k) => Number(((first + k) * step).toPrecision(15)) + 0);
 }
 
-// Ends of a log axis that holds the values: powers of ten.
+// Returns the ends of a log axis that contains the values: powers of ten.
 export function decades_around(low: number, high: number): [number, number] {
   const from = Math.max(-307, Math.floor(Math.log10(low) + 1e-9)), to = Math.min(308, Math.ceil(Math.log10(high) - 1e-9));
   return [power_of_ten(from), power_of_ten(Math.max(to, from + 1))];
 }
 
-// Powers of ten within a log axis.
+// Returns the powers of ten within a log axis.
 export function decades(low: number, high: number): number[] {
   const first = Math.ceil(Math.log10(low) - 1e-9), count = Math.floor(Math.log10(high) + 1e-9) - first + 1;
   return Array.from({ length: Math.max(0, count) }, (_, k) => power_of_ten(first + k));
@@ -57,7 +57,7 @@ export function decades(low: number, high: number): number[] {
 
 const power_of_ten = (k: number): number => Number(`1e${k}`);
 
-// Of the splits of a log axis those that are labelled and ruled: powers of ten, as many as fit.
+// Returns the splits of a log axis that get labels and lines: powers of ten, as many as fit; null for the others.
 export function powers(values: number[], room: number): (number | null)[] {
   const exponent = (v: number): number | null => {
     const k = Math.log10(v);
@@ -75,8 +75,8 @@ export function power_label(v: number | null): string {
   return `10${String(Math.round(k)).replace('-', '\u207b').replace(/\d/g, (d) => up[Number(d)])}`;
 }
 
-// Where a text beside the line at x begins: on its right, or on its left where it would pass the edge, as at the event that
-// ends a motion. Null where it has no room behind `free`.
+// Returns the position at which a text beside the line at x begins: on the right of the line, or on its left if the text would
+// pass the edge, as for the event that ends a motion. Returns null if there is no room after `free`.
 export function beside(x: number, width: number, gap: number, free: number, edge: number): number | null {
   const at = x + gap + width + gap / 2 > edge ? x - gap - width : x + gap;
   return at < free ? null : at;

@@ -1,4 +1,4 @@
-// One picture of a scene, as its observer or as an inertial one sees it: a canvas, a camera, what the mouse does.
+// One picture of a scene, as its observer or an inertial one sees it: a canvas, a camera, mouse and keys.
 
 import {
   DirectionalLight, Group, HemisphereLight, OrthographicCamera, PerspectiveCamera, Scene, Vector3, type Mesh, type Object3D,
@@ -19,7 +19,7 @@ import { theme } from './theme.ts';
 
 const fov = 32;
 
-// The eye relative to what is looked at, which may move.
+// The camera relative to its target, which may move.
 export interface Look { offset: Vector; shift: Vector; zoom: number }
 
 export class View {
@@ -31,14 +31,14 @@ export class View {
   private readonly camera: PerspectiveCamera | OrthographicCamera;
   private readonly controls: OrbitControls;
   private world = new Scene();
-  private carrier = new Group();                 // what is fixed to the observer's axes
+  private carrier = new Group();                 // objects that are fixed to the observer's axes
   private key = new DirectionalLight();
   private actors: Actor[] = [];
   private triad: Triad | null = null;            // the observer's axes, in an inertial view
   private follow = '';
   private anchor: { eye: Vector; target: Vector } = { eye: [0, 0, 0], target: [0, 0, 0] };
   private half = 1;                              // half the height of an orthographic picture at zoom 1
-  private requested = 0;                         // the frame that will draw; 0: none
+  private requested = 0;                         // the animation frame that will draw; 0 for none
   private built = false;
   private untouched = true;                      // the reader has not turned the camera yet
 
@@ -58,13 +58,13 @@ export class View {
     this.controls.addEventListener('start', () => { this.untouched = false; });
     this.canvas.addEventListener('keydown', (e) => this.pressed(e));
     this.canvas.addEventListener('pointerdown', () => this.canvas.focus({ preventScroll: true }));
-    // The wheel scrolls the page unless the reader has turned to this picture.
+    // The wheel scrolls the page unless this picture has the focus.
     this.canvas.addEventListener('wheel', (e) => {
       if (document.activeElement !== this.canvas && !e.ctrlKey) e.stopImmediatePropagation();
     }, { capture: true, passive: true });
   }
 
-  // Anew: with other colours, or for the first time.
+  // Builds the objects, for the first time or with other colours.
   build(): void {
     this.dispose();
     this.built = true;
@@ -76,7 +76,7 @@ export class View {
     this.key.castShadow = !flat && !!this.model.floor;
     this.key.shadow.mapSize.set(1024, 1024);
     this.key.shadow.radius = 3;
-    // From the reader's side, so that no face that is looked at is grey.
+    // This light comes from the camera, so that no visible face is dark.
     const fill = new DirectionalLight(0xffffff, flat ? 0 : 1.2);
     this.camera.clear().add(fill, fill.target);
     fill.target.position.set(0, 0, -1);
@@ -121,7 +121,7 @@ export class View {
 
   private ratio(): number { return Math.min(2, devicePixelRatio || 1); }
 
-  // To the size that the page gives the canvas. Returns whether that drew the picture.
+  // Adapts the canvas to its size on the page. Returns true if that drew the picture.
   resize(): boolean {
     const width = Math.round(this.canvas.clientWidth * this.ratio()), height = Math.round(this.canvas.clientHeight * this.ratio());
     if (width === 0 || height === 0 || (width === this.canvas.width && height === this.canvas.height)) return false;
@@ -137,7 +137,7 @@ export class View {
     this.requested = requestAnimationFrame(() => this.draw());
   }
 
-  // At once, in place of a drawing that was requested.
+  // Draws at once and cancels a requested drawing.
   draw(): void {
     cancelAnimationFrame(this.requested);
     this.requested = 0;
@@ -180,7 +180,7 @@ export class View {
     draw_labels(this.pen, texts, this.ratio(), t);
   }
 
-  // Where the camera's eye and target are carried along with the motion.
+  // Returns the points of the motion that the eye and the target of the camera follow.
   private anchors(time: number): { eye: Vector; target: Vector } {
     const zero: Vector = [0, 0, 0];
     const { eye, target } = this.model.camera;
@@ -215,7 +215,7 @@ export class View {
     this.request();
   }
 
-  // The first look: the model's own camera, or all of the motion, or what is followed and moves with it.
+  // Resets the camera: to that of the model, else to the whole motion, or to the followed item and its surroundings.
   reset(): void {
     const time = this.now(), { camera } = this.model;
     this.untouched = true;
@@ -285,13 +285,13 @@ export class View {
     camera.updateMatrixWorld();
   }
 
-  // Height of the part of the world in view, at the target.
+  // Returns the height of the visible part of the world at the target.
   private span(): number {
     if (this.camera instanceof OrthographicCamera) return (2 * this.half) / this.camera.zoom;
     return 2 * Math.tan((fov * Math.PI) / 360) * this.camera.position.distanceTo(this.controls.target);
   }
 
-  // The shadow's map covers the bodies as they stand now, so that it is sharp.
+  // Fits the shadow map to the present positions of the bodies, so that shadows are sharp.
   private light(): void {
     const bodies = this.actors.filter((a) => a.item.kind === 'body' && a.object.visible);
     const center = bodies.reduce((sum, a) => sum.add(a.object.position), new Vector3()).divideScalar(Math.max(1, bodies.length));
@@ -306,7 +306,7 @@ export class View {
     this.key.shadow.normalBias = 0.01 * unit;
   }
 
-  // Arrows turn (flat: shift), with the shift key they shift; + and - zoom; 0 resets.
+  // Arrow keys turn the camera; in flat views, and with the shift key, they shift it. + and - zoom, 0 resets.
   private pressed(e: KeyboardEvent): void {
     if (e.ctrlKey || e.metaKey || e.altKey) return;
     const step: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };

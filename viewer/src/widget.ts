@@ -1,7 +1,8 @@
 // The viewer as a module for anywidget: the picture and the plots of a motion in a notebook. The model of the widget has
 //   data      the JSON of CONTRACT.md, a text
 //   plots     whether plots are shown below the picture
-//   time      a time to show; playing: whether the motion plays. Both go from Python to the picture.
+//   time      the time that is shown
+//   playing   whether the motion plays; Python sets time and playing
 
 import css from './viewer.css?inline';
 import { case_handle, type CaseHandle } from './api.ts';
@@ -26,7 +27,7 @@ const dark = `--paper:#14171b;--ink:#e4e7ea;--quiet:#98a2ad;--line:#323941;--acc
 --c0:#7db4f2;--c1:#f0956c;--c2:#7fcb9b;--c3:#c3a1e6;--c4:#dfbc55;--c5:#6ccfd8;--c6:#ee8fb0;--c7:#a9b3bd`;
 const style = `:host{display:block;${light}}:host([data-dark]){${dark}}.plots{margin-top:1rem}${css}`;
 
-// Notebooks mark their dark themes in different ways, but all of them paint a background.
+// Notebooks mark dark themes in different ways, but all of them have a background, whose colour is tested.
 function on_dark(element: Element): boolean {
   for (let e: Element | null = element; e; e = e.parentElement ?? ((e.getRootNode() as ShadowRoot).host ?? null)) {
     const painted = getComputedStyle(e).backgroundColor;
@@ -35,7 +36,7 @@ function on_dark(element: Element): boolean {
   return false;
 }
 
-// A style sheet within a shadow tree cannot bring a font.
+// Adds the font to the document, since a style sheet within a shadow tree cannot define one.
 function bring_font(): void {
   const font = css.match(/@font-face\s*\{[^}]*\}/)?.[0];
   if (font && !document.querySelector('style[data-anholon-font]')) document.head.append(h('style', { 'data-anholon-font': true }, font));

@@ -11,7 +11,7 @@ export class CaseChoice {
     this.element = h('label', { hidden: true }, 'case ', this.select);
   }
 
-  // The name of the chosen case; empty: the file without a case.
+  // The name of the chosen case; empty for the file without a case.
   get chosen(): string { return this.select.value; }
 
   // Lists the cases of a text. The chosen one stays chosen.

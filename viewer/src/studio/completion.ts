@@ -1,13 +1,13 @@
-// What may stand at a place of a model file: sections, keys of a section, values of a key, functions and names of the model.
+// Completions at a place of a model file: sections, keys of a section, values of a key, functions and names of the model.
 
 import type { Language, Name } from './engine.ts';
 
 export interface Option { label: string; detail: string; kind: string; apply?: string }
-export interface Offered { from: number; options: Option[] }      // from: where the word begins, in the text
+export interface Offered { from: number; options: Option[] }      // from: the position in the text at which the word begins
 
 const plain = (markdown: string): string => markdown.replace(/[`*]/g, '').replace(/\[([^\]]*)\]\([^)]*\)/g, '$1');
 
-// The section that holds a position: "body", "" for the head of the file; and its fields that are written already.
+// Returns the section of a position, for example "body", or "" for the head of the file, with the fields that it has already.
 export function section_at(text: string, position: number): { name: string; given: Set<string> } {
   let name = '';
   let given = new Set<string>();
@@ -25,7 +25,7 @@ export function section_at(text: string, position: number): { name: string; give
   return { name: name.replace(/^case\.[^.]*\.?/, ''), given };
 }
 
-// Names that the text declares in sections whose names are the author's.
+// Returns the names that the text declares in sections whose names the author chooses.
 export function declared(text: string): Name[] {
   const list: Name[] = [];
   let name = '';
@@ -44,7 +44,7 @@ export function offered(language: Language, names: Name[], text: string, positio
   const word = /[A-Za-z_][A-Za-z0-9_.]*$/.exec(before)?.[0] ?? '';
   const from = position - word.length;
   if (/^[^"']*#/.test(before)) return null;
-  // A header: [bo
+  // A header that is being written: [bo
   if (/^\s*\[\[?[A-Za-z0-9_.]*$/.test(before) && !/=/.test(before)) {
     const double = /^\s*\[\[/.test(before);
     const rest = text.slice(position).split('\n')[0];

@@ -33,7 +33,7 @@ const look = EditorView.theme({
   '.cm-completionDetail': { fontStyle: 'normal', color: 'inherit', opacity: '.8', marginLeft: '.8em' },
 });
 
-// The mode ends a number before its exponent.
+// The TOML mode of CodeMirror ends a number before its exponent.
 const model_text: typeof toml = { ...toml, token: (stream, state) => {
   const { inString, lhs, inArray } = state as { inString: boolean; lhs: boolean; inArray: number };
   const value = !inString && !lhs && !(stream.sol() && inArray === 0);

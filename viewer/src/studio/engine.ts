@@ -1,12 +1,12 @@
-// What the studio asks of the program: functions of a text and a case. The page knows no more of it, so a program compiled to WebAssembly
-// can take the place of the one behind HTTP (http_engine.ts).
+// The functions of the program that the studio calls with a text and a case. The page uses the program only by them, so a program
+// compiled to WebAssembly can replace the one behind HTTP (http_engine.ts).
 
 export interface Problem {
   severity: 'error' | 'warning' | 'note';
   message: string;
   hint: string;
-  file: string;                            // empty: the text itself
-  line: number; column: number; length: number;      // from 1, in characters; line 0: the text as a whole
+  file: string;                            // empty for the text itself
+  line: number; column: number; length: number;      // from 1, in characters; line 0 stands for the whole text
 }
 
 export interface Trouble { text: string; hint: string; outcome: string; diagnostics: Problem[] }
@@ -18,12 +18,12 @@ export const replaced = <T>(a: Answer<T>): a is Replaced => typeof a === 'object
 
 export interface Name { name: string; what: string }
 export interface Checked { diagnostics: Problem[]; names: Name[]; cases: string[]; title: string; moves: boolean }
-export interface Section { id: string; title: string; html: string }       // markup of the program, in which all text of the model is escaped
+export interface Section { id: string; title: string; html: string }       // markup by the program, which escapes all text of the model
 export interface Sections { sections: Section[] }
 export interface Motion extends Sections { title: string; data: string }   // data: the JSON of CONTRACT.md
-export interface CaseMotion extends Motion { number: number; command: string }    // of the case of a sweep; the command makes a page of it
+export interface CaseMotion extends Motion { number: number; command: string }    // the number of the case; a command that makes its page
 
-// The text of a model and the scenario [case.NAME] that is applied to it; empty: none.
+// The text of a model, and the scenario [case.NAME] that is applied to it; empty for none.
 export interface Chosen { text: string; case_name: string }
 
 export interface Engine {
@@ -31,18 +31,18 @@ export interface Engine {
   simulate(of: Chosen, edition: number): Promise<Answer<Motion>>;
   derive(of: Chosen, edition: number): Promise<Answer<Sections>>;
   prove(of: Chosen, edition: number): Promise<Answer<Sections>>;
-  motion_of_case(number: number, edition: number): Promise<Answer<CaseMotion>>;      // of the sweep that was opened
+  motion_of_case(number: number, edition: number): Promise<Answer<CaseMotion>>;      // a case of the sweep that was opened
 }
 
-// The map of a sweep: src/report/map.js reads it and is told what it says here in brief.
+// The map of a sweep, which src/report/map.js reads.
 export interface SweepMap {
   title: string; shown: string; command: string; model: string; varied: string[];
   axes: { name: string; label: string }[];
   columns: { name: string; label: string; data: string; words: string[] }[];
   cells?: string;
   all: number; cases: number;              // rows in the folder; cases that the sweep is to have
-  parts: number; all_parts: number;        // that are there, and that it is to have
-  program: string; other_program: string;  // that made the folder; that computes its motions, if it is another one
+  parts: number; all_parts: number;        // complete parts; parts that the sweep is to have
+  program: string; other_program: string;  // the program that made the folder; the one that computes motions, if they differ
 }
 
 export interface Key { name: string; meaning: string; choices: string[] }
@@ -52,12 +52,12 @@ export interface Language {
   reserved: { name: string; meaning: string }[];
 }
 
-// Where the text comes from and goes to.
+// The place from which the text is opened and to which it is saved.
 export interface Opened { name: string; text: string; hash: string; no_saving: string; version: string }
 export interface Store {
   open(): Promise<Opened>;
   language(): Promise<Language>;
   sweep(): Promise<SweepMap | Failed>;
-  // Asks first (`changed`) if the file is not the text that `open` or the last `save` gave or took.
+  // Saves nothing and answers `changed` if the file was changed since `open` or the last `save`, unless `anyway` is true.
   save(text: string, anyway: boolean): Promise<'saved' | { why: string; changed: boolean }>;
 }

@@ -1,4 +1,4 @@
-// The program behind HTTP on the loopback address; the token is in the path of the page, so addresses are relative.
+// The program behind HTTP on the loopback address. Addresses are relative, since the path of the page holds the token.
 
 import type { Answer, CaseMotion, Checked, Chosen, Engine, Failed, Language, Motion, Opened, Sections, Store, SweepMap } from './engine.ts';
 
@@ -8,7 +8,7 @@ const lost = (why: string): Failed => ({
   error: { text: `the program does not answer: ${why}`, hint: 'start anholon studio again', outcome: '', diagnostics: [] },
 });
 
-// The program answers that it does not take the text.
+// Makes the answer for a text that the program refuses.
 const refused = (why: string): Failed => ({
   error: { text: why, hint: 'the command line takes longer texts', outcome: '', diagnostics: [] },
 });
@@ -28,7 +28,7 @@ async function get<T>(what: string): Promise<T> {
   return await reply.json() as T;
 }
 
-// The hash of the file as this page has read or saved it.
+// The hash of the file when this page last read or saved it.
 let known = '';
 
 export const http_engine: Engine & Store = {

@@ -1,4 +1,4 @@
-// The studio: a model in an editor, and beside it what the program makes of it, after each change.
+// The studio: a model in an editor, and beside it the results of the program, renewed after each change.
 
 import '../viewer.css';
 import './studio.css';
@@ -11,7 +11,7 @@ import { http_engine } from './http_engine.ts';
 import { Preview } from './preview.ts';
 import { SweepStudio } from './sweep.ts';
 
-const pause = 40;      // ms without a key before the text is computed
+const pause = 40;      // ms without a key press before the text is computed
 
 class Studio {
   private edition = 1;
@@ -68,7 +68,7 @@ class Studio {
     this.timer = setTimeout(() => void this.compute(), pause);
   }
 
-  // The motion first, which the eye waits for, then the equations, then the proof.
+  // Computes the motion first, since the reader waits for it, then the equations, then the proof.
   private async compute(): Promise<void> {
     const { edition } = this, of = { text: this.editor.text, case_name: this.cases.chosen }, began = performance.now();
     const old = (a: unknown): boolean => edition !== this.edition || replaced(a as Answer<object>);

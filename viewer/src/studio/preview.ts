@@ -1,5 +1,5 @@
-// What the studio shows of a text: sections of a report, the player and the plots. A new motion takes the place of the one before
-// at the same time of the motion, with the camera where the reader has put it.
+// The results that the studio shows: sections of a report, the player and the plots. A new motion replaces the last one; the time
+// and the camera are kept.
 
 import { add_copy_buttons } from '../copy.ts';
 import type { RawReport } from '../data.ts';
@@ -20,13 +20,13 @@ export class Preview {
     place.append(this.note, this.main);
   }
 
-  // Puts each section in its place; one that is equal stays as it is, so that the reader's place and selection stay.
+  // Inserts the sections. Equal sections are not replaced, so that the reader's scroll position and selection stay.
   sections(list: Section[]): void {
     for (const s of list) {
       const old = this.main.querySelector<HTMLElement>(`#${s.id}`);
       if (old?.dataset.html === s.html) continue;
       const element = h('section', { id: s.id });
-      element.innerHTML = s.html;            // of the program, which escapes all text of the model
+      element.innerHTML = s.html;            // markup by the program, which escapes all text of the model
       element.prepend(h('h2', {}, s.title));
       element.dataset.html = s.html;
       if (old) old.replaceWith(element);
@@ -54,7 +54,7 @@ export class Preview {
     });
   }
 
-  // Says why what is shown is not what was asked for; an empty text takes it away.
+  // Shows why the results are not those of the current text; an empty text removes the message.
   stale(why: string, hint = '', shown = 'Shown is an earlier text.'): void {
     this.note.hidden = why === '';
     this.note.replaceChildren(...(why === '' ? [] : [h('strong', {}, `${shown} `), why, hint ? h('span', { class: 'hint' }, ` hint: ${hint}`) : '']));

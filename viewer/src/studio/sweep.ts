@@ -1,4 +1,4 @@
-// The studio of a sweep: the map of its cases, and beside it the motion of the case that is picked.
+// The studio of a sweep: the map of its cases, and beside it the motion of the chosen case.
 
 import { h } from '../dom.ts';
 import { theme_switch, watch_theme } from '../theme.ts';
@@ -6,12 +6,12 @@ import { failed, replaced, type Engine, type Store, type SweepMap } from './engi
 import { Preview } from './preview.ts';
 
 interface MapHost { invitation: string; picked(number: number, row: number): void; unknown?(number: number): void }
-// map.js, which the page loads before.
+// The function of map.js, which the page loads first.
 declare function anholon_map(root: HTMLElement, data: SweepMap, host: MapHost): { pick(row: number): void };
 
 export class SweepStudio {
   private edition = 1;
-  private shown = -1;          // the case whose motion is seen
+  private shown = -1;          // the case whose motion is shown
   private readonly status = h('span', { class: 'status', role: 'status' });
   private readonly place = h('div', { class: 'left sweep', role: 'region', 'aria-label': 'Cases', tabindex: '0' });
   private readonly preview: Preview;
