@@ -26,6 +26,15 @@ Real round_off_of_slip(const ContactRows& rows, Real size, Real free) {
   return most;
 }
 
+// The size of the accelerations that the given forces would cause without constraints and contacts: constraints may
+// leave of them a round-off alone.
+Real of_given_forces(const ContactProblem& p) {
+  Real most = 0;
+  for (std::size_t a = 0; a < p.b.size(); ++a)
+    if (const Real inertia = std::abs(p.A[a][a]); inertia > 0) most = std::max(most, std::abs(p.b[a]) / inertia);
+  return most;
+}
+
 // `free`: the size of the accelerations without contacts. If the contacts leave no acceleration, the accelerations of
 // the modes are round-off of this size.
 bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
@@ -163,7 +172,7 @@ class Solutions {
  public:
   explicit Solutions(const ContactProblem& p) : p_(p) {
     const auto open = of_modes(p, ContactModes(p.contacts.size()));
-    free_ = std::max(open ? largest(open->x) : 0, Real(1e-300L));
+    free_ = std::max({open ? largest(open->x) : 0, of_given_forces(p), Real(1e-300L)});
   }
 
   // Returns the solution of modes; the directions of slips that begin are guesses. Returns nullopt if the modes are not
