@@ -26,19 +26,33 @@ Real round_off_of_slip(const ContactRows& rows, Real size, Real free) {
   return most;
 }
 
+// The size of a given force, relative to which a force counts as zero. A force whose terms cancel is not known better than
+// to the round-off of the terms.
+Real size_of_given(const ContactProblem& p, std::size_t a) {
+  constexpr Real kRoundOff = 1e-15L;
+  const Real terms = p.terms_of_b.empty() ? 0 : p.terms_of_b[a];
+  return std::max(std::abs(p.b[a]), terms * kRoundOff / kSame);
+}
+
+Real largest_given(const ContactProblem& p) {
+  Real most = 0;
+  for (std::size_t a = 0; a < p.b.size(); ++a) most = std::max(most, size_of_given(p, a));
+  return most;
+}
+
 // The size of the accelerations that the given forces would cause without constraints and contacts: constraints may
 // leave of them a round-off alone.
 Real of_given_forces(const ContactProblem& p) {
   Real most = 0;
   for (std::size_t a = 0; a < p.b.size(); ++a)
-    if (const Real inertia = std::abs(p.A[a][a]); inertia > 0) most = std::max(most, std::abs(p.b[a]) / inertia);
+    if (const Real inertia = std::abs(p.A[a][a]); inertia > 0) most = std::max(most, size_of_given(p, a) / inertia);
   return most;
 }
 
 // `free`: the size of the accelerations without contacts. If the contacts leave no acceleration, the accelerations of
 // the modes are round-off of this size.
 bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
-  const Real force = largest(p.b), size = std::max(largest(f.x), free);
+  const Real force = largest_given(p), size = std::max(largest(f.x), free);
   for (std::size_t c = 0; c < p.contacts.size(); ++c) {
     const ContactRows& rows = p.contacts[c];
     const ContactMode& mode = f.modes[c];

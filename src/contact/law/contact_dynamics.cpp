@@ -100,7 +100,13 @@ void ContactDynamics::go(const ContactState& at) {
   };
   problem_ = {};
   places_.clear();
-  for (std::size_t i = 0; i < n_; ++i) problem_.A.push_back(row()), problem_.b.push_back(next());
+  std::vector<long double> terms;
+  machine_.made_of(terms);
+  for (std::size_t i = 0; i < n_; ++i) {
+    problem_.A.push_back(row());
+    problem_.terms_of_b.push_back(terms[tape_.roots[k]]);
+    problem_.b.push_back(next());
+  }
   constraint_rates_.clear();
   for (std::size_t r = 0; r < independent_.size(); ++r) {
     problem_.Phi.push_back(row());

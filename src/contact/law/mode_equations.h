@@ -68,6 +68,8 @@ struct ContactProblem {
   std::vector<std::vector<long double>> A, Phi;
   std::vector<long double> b, beta;
   std::vector<ContactRows> contacts;
+  // The sums of the absolute values of the terms of which b is made, whose round-off is an error of b; empty for impulses.
+  std::vector<long double> terms_of_b = {};
 };
 
 struct ContactSolution {
