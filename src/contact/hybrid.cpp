@@ -397,6 +397,11 @@ class HybridMotion {
       if (bodies_.near.closed(c) && bodies_.near.gap_rate(c) < 0 && !bodies_.contacts[c].under) striking = c;
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
       touches.push_back(bodies_.near.closed(c) && bodies_.near.gap_rate(c) <= 0);
+    if (const std::string& nonlinear = bodies_.dynamics.nonlinear_constraint(); !nonlinear.empty())
+      return {OutcomeKind::inconsistent,
+              "the contact '" + bodies_.contacts[striking].name + "' strikes" + when() + ", and the constraint '" +
+                  nonlinear + "' is not linear in the velocities: no law tells its impulse",
+              "end the motion before the impact, or write the constraint so that it is linear in the velocities"};
     std::vector<Impact> list = impacts(bodies_.dynamics, bodies_.contacts, touches);
     if (list.size() != 1) {
       bodies_.first_alone(touches);

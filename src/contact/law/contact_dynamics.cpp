@@ -51,6 +51,14 @@ Column formulas(Workspace& s, const std::vector<Contact>& contacts) {
   return es;
 }
 
+// Returns the name of the first constraint on velocities that is not linear in them; empty if there is none.
+std::string first_nonlinear(const Scenario& s) {
+  for (const std::size_t r : s.independent)
+    for (const Expr slope : s.mechanics->Phi[r])
+      if (s.mechanics->order[r] == 1 && jet_order(slope) == 1) return s.model->constraints[r].name;
+  return {};
+}
+
 std::vector<Contact> owned(Workspace& s, std::vector<Contact> contacts) {
   for (Contact& c : contacts) {
     for (Expr* e : {&c.gap, &c.friction, &c.static_friction, &c.restitution}) *e = s.graph().own(*e);
@@ -63,9 +71,10 @@ std::vector<Contact> owned(Workspace& s, std::vector<Contact> contacts) {
 }  // namespace
 
 ContactDynamics::ContactDynamics(Workspace& s, const std::vector<Contact>& contacts)
-    : n_(s.mechanics->q.size()), independent_(s.independent), contacts_(owned(s, contacts)), graph_(s.graph()),
-      tape_(compile(formulas(s, contacts_))), parameters_(parameter_values<long double>(*s.model)),
-      borders_(sides(contacts)), machine_(tape_, 0, with_sides(parameters_, borders_)) {}
+    : n_(s.mechanics->q.size()), independent_(s.independent), nonlinear_(first_nonlinear(s)),
+      contacts_(owned(s, contacts)), graph_(s.graph()), tape_(compile(formulas(s, contacts_))),
+      parameters_(parameter_values<long double>(*s.model)), borders_(sides(contacts)),
+      machine_(tape_, 0, with_sides(parameters_, borders_)) {}
 
 std::vector<double> sides(const std::vector<Contact>& contacts) {
   return std::vector<double>(contacts.empty() || !contacts[0].borders ? 0 : 2 * contacts[0].borders->size(), 1);

@@ -52,6 +52,8 @@ class ContactDynamics {
   // True if the accelerations are undetermined when this contact alone sticks, although there are degrees of freedom
   // for its gap and its slip: then the coordinates are singular.
   bool loses_rank(std::size_t contact) const;
+  // The name of a constraint that is not linear in the velocities, so that no law tells its impulse; empty if there is none.
+  const std::string& nonlinear_constraint() const { return nonlinear_; }
   // True if masses, forces and constraints have values at the state; log(x) has none at x = 0.
   bool has_values() const;
   // has_derivatives(): true if the gap of the contact has derivatives at the state; that of a disc that lies flat has
@@ -72,6 +74,7 @@ class ContactDynamics {
  private:
   std::size_t n_;
   std::vector<std::size_t> independent_;
+  std::string nonlinear_;
   std::vector<Contact> contacts_;
   Graph& graph_;
   Tape tape_;
