@@ -221,9 +221,9 @@ static Outcome complete(const InitialProblem<double>& problem, Scenario& s) {
   return complete_state(problem, *s.routh, s.routh_structure, s.state);
 }
 
-// True if the model has constraints on accelerations, conditions on them or forces that are nonlinear in them, which
-// may need more than positions and velocities.
-static bool may_need_completion(const Model& model, const Mechanics& mechanics) {
+// True if the model has constraints on accelerations or conditions on them, which may need more than positions and
+// velocities.
+static bool may_need_completion(const Model& model) {
   const auto high = [](Expr e) {
     for (NodeId id : symbols({&e, 1}))
       if (const Node& n = e.graph->node(id); n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1))
@@ -233,8 +233,15 @@ static bool may_need_completion(const Model& model, const Mechanics& mechanics) 
   return std::any_of(model.constraints.begin(), model.constraints.end(),
                      [](const Constraint& c) { return c.order >= 2; }) ||
          std::any_of(model.initial.conditions.begin(), model.initial.conditions.end(),
-                     [&](const Condition& c) { return high(c.residual); }) ||
-         !nonlinear_in_forces(mechanics).empty();
+                     [&](const Condition& c) { return high(c.residual); });
+}
+
+// True if a given force is nonlinear in leading derivatives. A form that eliminates coordinates has lower orders for these.
+static bool forces_are_nonlinear(const Formulation& form, const Scenario& s) {
+  std::vector<int> d(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates));
+  if (form.eliminates())
+    for (int& order : d) order = std::max(order, 2);
+  return !nonlinear_in_forces(*s.mechanics, d).empty();
 }
 
 // Refuses a constraint of which the structure needs derivatives that the fits of its tables do not have.
@@ -289,7 +296,7 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
     choose_constraints(*model, parameters, s);
   else
     for (std::size_t r = 0; r < model->constraints.size(); ++r) s.independent.push_back(r);
-  if (initial.ok() && numbers && may_need_completion(*model, *s.mechanics)) initial = complete(problem, s);
+  if (initial.ok() && numbers && may_need_completion(*model)) initial = complete(problem, s);
   s.elimination = Elimination();
   if (form.eliminates()) {
     const auto at = std::make_shared<PointValues>(values_near(*model, parameters, s.state));
@@ -314,7 +321,7 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
   const bool beyond =
       std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
                   [](int d) { return d > 2; }) ||
-      conditions_on_leading(*model, s.system, s.structure.d);
+      conditions_on_leading(*model, s.system, s.structure.d) || forces_are_nonlinear(form, s);
   if (beyond && numbers && !s.routh) initial = complete(problem, s);
   if (initial.ok()) note_unused_values(form, s);
   s.notes.insert(s.notes.end(), s.state.notes.begin(), s.state.notes.end());

@@ -16,15 +16,24 @@ bool may_branch(const Mechanics& m, const System& s, std::size_t r) {
   return false;
 }
 
-Column nonlinear_in_forces(const Mechanics& m) {
+Column nonlinear_in_forces(const Mechanics& m, const std::vector<int>& d) {
   Column list;
   Graph& g = m.graph();
+  const int least = *std::min_element(d.begin(), d.begin() + static_cast<std::ptrdiff_t>(m.q.size()));
+  const auto leads = [&](NodeId id) {
+    const Node& n = g.node(id);
+    return n.kind == Kind::jet && static_cast<int>(n.order) == d[n.index];
+  };
+  const auto holds_leading = [&](Expr e) {
+    const std::vector<NodeId> met = symbols({&e, 1});
+    return std::any_of(met.begin(), met.end(), leads);
+  };
   for (const Column* forces : {&m.Q, &m.QR, &m.QD})
     for (Expr force : *forces) {
-      if (jet_order(force) < 2) continue;
+      if (jet_order(force) < least) continue;
       for (NodeId id : symbols({&force, 1})) {
         const Expr x{&g, id};
-        if (g.node(id).kind == Kind::jet && g.node(id).order >= 2 && jet_order(partial(force, x)) >= 2 &&
+        if (leads(id) && holds_leading(partial(force, x)) &&
             std::none_of(list.begin(), list.end(), [&](Expr other) { return other.id == id; }))
           list.push_back(x);
       }
@@ -36,8 +45,8 @@ static bool constraints_may_branch(const Mechanics& m, const System& s) {
   return std::any_of(s.constraints.begin(), s.constraints.end(), [&](std::size_t r) { return may_branch(m, s, r); });
 }
 
-bool may_branch(const Mechanics& m, const System& s) {
-  return constraints_may_branch(m, s) || !nonlinear_in_forces(m).empty();
+bool may_branch(const Mechanics& m, const System& s, const Structure& t) {
+  return constraints_may_branch(m, s) || !nonlinear_in_forces(m, t.d).empty();
 }
 
 StageEquation law(const System& s, std::size_t i, unsigned k) {

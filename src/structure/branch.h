@@ -10,11 +10,11 @@ namespace anholon {
 // True if a constraint of order 2 or more is nonlinear in its highest derivatives: its equations may have several
 // solutions.
 bool may_branch(const Mechanics& m, const System& s, std::size_t constraint);
-// Returns the accelerations and higher derivatives in which a given force is nonlinear: the equations of motion may
-// have several solutions for them.
-Column nonlinear_in_forces(const Mechanics& m);
+// Returns the leading derivatives of coordinates in which a given force is nonlinear: the equations of motion may have
+// several solutions for them. `d`: the orders of the leading derivatives, 2 for a coordinate with inertia.
+Column nonlinear_in_forces(const Mechanics& m, const std::vector<int>& d);
 // True if there is such a constraint or such a force.
-bool may_branch(const Mechanics& m, const System& s);
+bool may_branch(const Mechanics& m, const System& s, const Structure& t);
 
 template <Number N>
 struct LeadingSolutions {

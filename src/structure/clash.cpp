@@ -22,7 +22,7 @@ std::string StateSolver<N>::entry_name(const Node& n) const {
 template <Number N>
 std::string StateSolver<N>::solution_text(const std::vector<N>& x, const System& s, const Structure& t) const {
   std::string list;
-  const Column of_forces = nonlinear_in_forces(m_);
+  const Column of_forces = nonlinear_in_forces(m_, t.d);
   for (std::size_t j = 0; j < s.size(); ++j) {
     if (j >= s.mechanical()) continue;
     const Expr leading = s.symbol(j, static_cast<unsigned>(t.d[j]));
@@ -64,13 +64,14 @@ template <Number N>
 Outcome StateSolver<N>::no_accelerations(bool singular) const {
   if (singular)
     return {OutcomeKind::singular,
-            "singular configuration: forces are nonlinear in the accelerations, and the equations of motion do not "
-            "determine these at the start",
+            "singular configuration: forces are nonlinear in accelerations, or in velocities of coordinates without "
+            "inertia, and the equations of motion do not determine these at the start",
             "give other initial data"};
-  return {OutcomeKind::no_convergence,
-          "forces are nonlinear in the accelerations, and no accelerations were found at the start that satisfy the "
-          "equations of motion",
-          kGiveGuess};
+  return {
+      OutcomeKind::no_convergence,
+      "forces are nonlinear in accelerations, or in velocities of coordinates without inertia, and no values of these "
+      "were found at the start that satisfy the equations of motion",
+      kGiveGuess};
 }
 
 template <Number N>

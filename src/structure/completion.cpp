@@ -180,7 +180,7 @@ bool StateSolver<N>::branch_was_named(const System& s, const Structure& t) const
 template <Number N>
 Outcome StateSolver<N>::leading(const System& s, const Structure& t) {
   const Column unknowns = leading_unknowns(s, t);
-  if (!may_branch(m_, s)) {
+  if (!may_branch(m_, s, t)) {
     Stage<N> all(m_, leading_equations(s, t), unknowns, 0, p_.parameters, p_.mass);
     std::vector<std::size_t> every;
     for (std::size_t j = 0; j < unknowns.size(); ++j) every.push_back(j);
@@ -202,8 +202,8 @@ Outcome StateSolver<N>::leading(const System& s, const Structure& t) {
   if (!others.empty() && !branch_was_named(s, t))
     state_.notes.push_back("the equations have several solutions at the start: " + solution_text(*taken, s, t) +
                            " is taken, there is also " + others +
-                           (nonlinear_in_forces(m_).empty() ? "; name one by [initial] branch = {…} or guess = {…}"
-                                                            : "; name one by [initial] guess = {…}"));
+                           (nonlinear_in_forces(m_, t.d).empty() ? "; name one by [initial] branch = {…} or guess = {…}"
+                                                                 : "; name one by [initial] guess = {…}"));
   return {};
 }
 
@@ -303,7 +303,7 @@ bool needs_completion(const Mechanics& m, const System& s, const Structure& t) {
   for (std::size_t j = 0; j < s.mechanical(); ++j)
     if (t.d[j] > (j < s.coordinates ? 2 : 0)) return true;
   const auto high = [](const Condition& c) { return holds_higher(c.residual); };
-  return may_branch(m, s) || conditions_on_leading(*m.model, s, t.d) ||
+  return may_branch(m, s, t) || conditions_on_leading(*m.model, s, t.d) ||
          std::any_of(m.model->initial.conditions.begin(), m.model->initial.conditions.end(), high);
 }
 
