@@ -87,8 +87,13 @@ void TouchingBodies::drop_left_over() {
   }
   constexpr long double kContradicts = 1e-6L;
   dynamics.go(at);
-  if (slip_of_what_sticks() <= std::max(slipped, kContradicts)) return;
-  at.qd = found;
+  if (slip_of_what_sticks() > std::max(slipped, kContradicts)) {
+    at.qd = found;
+    dynamics.go(at);
+  }
+  // A constraint that holds the time may ask for velocities that are as small as round-off, where it turns the motion back.
+  if (dynamics.velocities_hold()) return;
+  if (const auto nearest = dynamics.nearest(at.qd, at)) at.qd = *nearest;
   dynamics.go(at);
 }
 

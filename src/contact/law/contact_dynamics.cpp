@@ -109,6 +109,7 @@ void ContactDynamics::go(const ContactState& at) {
   };
   problem_ = {};
   places_.clear();
+  velocities_.assign(at.qd.begin(), at.qd.end());
   std::vector<long double> terms;
   machine_.made_of(terms);
   for (std::size_t i = 0; i < n_; ++i) {
@@ -255,6 +256,16 @@ bool ContactDynamics::has_slip(std::size_t c) const {
   const Place& at = places_[c];
   return all_finite({at.slip[0], at.slip[1], rows.tangential_rate[0], rows.tangential_rate[1]}) &&
          std::all_of(rows.tangential.begin(), rows.tangential.end(), all_finite);
+}
+
+bool ContactDynamics::velocities_hold() const {
+  constexpr long double kOfTerms = 1e-14L;
+  for (std::size_t r = 0; r < constraint_rates_.size(); ++r) {
+    long double terms = 0;
+    for (std::size_t a = 0; a < n_; ++a) terms = std::max(terms, std::abs(problem_.Phi[r][a] * velocities_[a]));
+    if (std::abs(constraint_rates_[r]) > kOfTerms * terms) return false;
+  }
+  return true;
 }
 
 std::optional<std::vector<double>> ContactDynamics::nearest(const std::vector<double>& qd,

@@ -66,6 +66,8 @@ class ContactDynamics {
   // The equations of the jump of least change that stops what touches or sticks, without friction. The constraints hold
   // after it: the round-off of the earlier velocities may be larger than the remaining ones.
   ContactProblem stop() const;
+  // True if the velocities satisfy the constraints up to the round-off of their terms with velocities.
+  bool velocities_hold() const;
   // Returns the velocities nearest to `qd` in the mass norm with which the constraints hold at the state; constraints
   // that are not linear in the velocities are linearized at those of the state. Returns nullopt if the constraints
   // depend on each other.
@@ -82,7 +84,7 @@ class ContactDynamics {
   std::vector<double> borders_;  // the borders of the machine's parameters
   Machine<long double> machine_;
   ContactProblem problem_;
-  std::vector<long double> constraint_rates_;
+  std::vector<long double> constraint_rates_, velocities_;
   std::vector<Place> places_;
   long double speed_ = 0;
   std::vector<long double> most_, met_;  // largest velocities so far: with the means of segments, and at states alone
