@@ -62,7 +62,7 @@ TEST(WholeExponents, APowerThatLosesItsValueIsNamed) {
   const std::string text = test::replaced(bead(force("-k*x^n*x"), "n = 2.5"), "x = -0.5", "x = 0.5");
   const Outcome o = run(text).report.outcome;
   EXPECT_EQ(o.kind, OutcomeKind::not_a_number);
-  EXPECT_EQ(o.message.rfind("x^n has no ", 0), 0U) << o.message;
+  EXPECT_EQ(o.message.rfind("x^n in the force 'force1' has no ", 0), 0U) << o.message;
   EXPECT_NE(o.hint.find("abs(x)^n*sign(x)"), std::string::npos) << o.hint;
 }
 
