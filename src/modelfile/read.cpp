@@ -110,13 +110,7 @@ class Reader {  // its references are used only while it runs
     read_events(root, scope_, model_, diagnostics_);
     check_observer(observer_, model_, diagnostics_);
     read_outputs(root, scope_, model_, diagnostics_);
-    contacts_ = read_contacts(root, scope_, model_, diagnostics_);
-    check_names_of_contacts(contacts_, model_, diagnostics_);
-    note_contacts();
-    contacts_.insert(contacts_.end(), switched.begin(), switched.end());
-    settle_states_in_contacts(model_, contacts_, diagnostics_);
-    settle_contact_forces(scope_, model_, contacts_, diagnostics_);
-    scope_.contact_forces.close();
+    take_contacts(root, switched);
     if (const Item* n = table(root, "notation")) {
       std::vector<std::string> declared;
       for (const auto& [name, d] : scope_.declarations()) declared.push_back(name);
@@ -155,6 +149,17 @@ class Reader {  // its references are used only while it runs
   void observer(const Item& root) {
     if (const Item* o = table(root, "observer"))
       guard([&] { observer_ = read_observer(*o, scope_, model_, diagnostics_); }, o->span);
+  }
+
+  // Reads the contacts; `switched`: the constraints that hold in some modes only.
+  void take_contacts(const Item& root, const std::vector<Contact>& switched) {
+    contacts_ = read_contacts(root, scope_, model_, diagnostics_);
+    check_names_of_contacts(contacts_, model_, diagnostics_);
+    note_contacts();
+    contacts_.insert(contacts_.end(), switched.begin(), switched.end());
+    settle_states_in_contacts(model_, contacts_, diagnostics_);
+    settle_contact_forces(scope_, model_, contacts_, diagnostics_);
+    scope_.contact_forces.close();
   }
 
   // Notes the contacts: the reader returns the model in which all contacts are open.
