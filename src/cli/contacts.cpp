@@ -17,14 +17,11 @@ void without_contacts(const Reader& in, const std::string& command) {
 Reader in_mode(Reader in, const SystemCommand& o, const std::string& command) {
   const std::vector<Contact>& list = contacts(*in.names);
   if (list.empty() && o.mode.empty()) return in;
-  const auto usage = [](const std::string& before, const Failure& f) {
-    return UsageError{"error: " + before + f.diagnostic.message + "\nhint: " + f.diagnostic.hint + "\n"};
-  };
-  if (o.mode.empty()) throw usage("", needs_mode(command, *in.model, list, "--mode "));
+  if (o.mode.empty()) throw usage_error(needs_mode(command, *in.model, list, "--mode "), in.source);
   try {
     put_chosen_mode(model_of(*in.names), list, split(o.mode));
   } catch (const Failure& f) {
-    throw usage("--mode: ", f);
+    throw usage_error(f, in.source, "--mode: ");
   }
   return in;
 }

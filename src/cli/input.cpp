@@ -17,6 +17,13 @@ void print_diagnostic(const Diagnostic& d, const SourceText& source) {
   say_lines(stderr, print(d, source));
 }
 
+UsageError usage_error(const Failure& f, const SourceText& source, const std::string& before) {
+  Diagnostic d = f.diagnostic;
+  d.message = before + d.message;
+  if (d.span.line > 0) return {print(d, source)};
+  return {"error: " + d.message + "\n" + (d.hint.empty() ? "" : "hint: " + d.hint + "\n")};
+}
+
 void print_outcome(const Outcome& o, const SourceText& source) {
   std::fflush(stdout);
   say(stderr, "stopped (%s): %s\n", name(o.kind), o.message.c_str());

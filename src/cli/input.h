@@ -20,6 +20,10 @@ struct UsageError {
   std::string text;
 };
 
+// Returns the error with `before` in front of its message, its place in the source if it has one, and its hint if it
+// has one.
+UsageError usage_error(const Failure& f, const SourceText& source, const std::string& before = "");
+
 // Throws UsageError, whose text shows the place of the mistake in the word of the option, or in the file that holds the
 // word.
 [[noreturn]] void refuse(const MistakeInWord& m, const char* option);

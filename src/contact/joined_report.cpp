@@ -21,8 +21,8 @@ static bool same_but_time(const Warning& a, const Warning& b) {
 static bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; }
 
 // The model of a mode has constraints NAME.gap and NAME.slip1, …, inputs NAME.n and NAME.t1, … that keep them, and two
-// events of a change that differ by a prime. A user knows the forces lambda.NAME and lambda.NAME.t1, and the events;
-// their names replace those of the model.
+// events of a change that differ by a prime. A user knows the contact, the forces lambda.NAME and lambda.NAME.t1, and
+// the events; their names replace those of the model.
 static void put_known_names(const std::string& contact, std::string& text) {
   const std::string lambda = "lambda.", monitor = "monitor '", name = contact + ".";
   for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
@@ -37,7 +37,12 @@ static void put_known_names(const std::string& contact, std::string& text) {
     const std::string what = text.substr(at + name.size(), end - at - name.size());
     const bool numbered = !what.empty() && (what.back() == '1' || what.back() == '2');
     const std::string of = force || quoted ? contact : lambda + contact;
-    if (what == "gap" || what == "n")
+    const std::string constraint = "constraint '";
+    const bool of_constraint = quoted && text.substr(0, begin).ends_with(constraint);
+    if (of_constraint && (what == "gap" || what.starts_with("slip"))) {
+      begin -= constraint.size();
+      text.replace(begin, end - begin, (what == "gap" ? "contact '" : "slip of the contact '") + contact);
+    } else if (what == "gap" || what == "n")
       text.replace(at, end - at, of);
     else if (numbered && (what.starts_with("slip") || (what.starts_with("t") && what.size() == 2)))
       text.replace(at, end - at, of + ".t" + what.back());
@@ -216,7 +221,10 @@ void JoinedReport::order_events() {
 SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t rows) {
   all_.outcome = std::move(outcome);
   for (const std::string& contact : contacts_) {
+    const std::string message = all_.outcome.message, constraint = "write the constraint in";
     put_known_names(contact, all_.outcome.message);
+    const std::size_t at = message == all_.outcome.message ? std::string::npos : all_.outcome.hint.find(constraint);
+    if (at != std::string::npos) all_.outcome.hint.replace(at, constraint.size(), "write the contact in");
     for (Warning& w : all_.warnings) put_known_names(contact, w.message);
   }
   order_events();

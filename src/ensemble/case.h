@@ -56,8 +56,9 @@ struct CaseResult {
   std::size_t steps = 0;
   std::vector<double> last;  // the `ensemble_columns` at the end or at the last good state; empty if there is none
   std::vector<std::vector<double>> rows;  // the same at the times asked for, t first
-  std::vector<double> reduced;  // the values of the reductions, over the motion as far as it came; may be empty
-  std::string event;            // the event that ended the motion; empty if none did
+  std::vector<double> reduced;       // the values of the reductions, over the motion as far as it came; may be empty
+  bool without_polynomials = false;  // BDF computed a part of the motion: reductions of formulas have no values
+  std::string event;                 // the event that ended the motion; empty if none did
 };
 
 class CaseSink {
@@ -85,13 +86,19 @@ struct CasesResiduals {
   std::string none;                  // the reason why there are none although they were requested
 };
 
+// The number of finished cases in which a reduction of a formula has no value.
+struct CasesWithoutValue {
+  std::size_t all = 0, without_polynomials = 0;
+  void add(const CasesWithoutValue& more) { all += more.all, without_polynomials += more.without_polynomials; }
+};
+
 struct EnsembleReport {
   Outcome outcome;  // interrupted, or finished; cases may have stopped either way
   std::size_t done = 0, finished = 0;
-  std::map<std::string, std::size_t> events;         // finished cases by the event that ended them
-  std::map<std::string, std::size_t> without_value;  // reduction of a formula -> finished cases without a value of it
-  std::size_t in_workspaces = 0;                     // cases that were not computed by the shared tapes
-  std::size_t most_held = 0;                         // the largest number of results that were in memory at once
+  std::map<std::string, std::size_t> events;               // finished cases by the event that ended them
+  std::map<std::string, CasesWithoutValue> without_value;  // by the reduction
+  std::size_t in_workspaces = 0;                           // cases that were not computed by the shared tapes
+  std::size_t most_held = 0;                               // the largest number of results that were in memory at once
   std::size_t threads = 0;
   double seconds = 0;
   CasesError error;

@@ -78,7 +78,7 @@ class OutputTape {
   }
   const N& operator[](std::size_t i) const { return machine_.value(i); }
   // Returns the sum of the absolute values of the terms of expression i.
-  N terms(std::size_t i) const { return machine_.magnitude(tape_.roots[i]); }
+  N terms(std::size_t i) const { return machine_.terms(i, 0); }
   // Returns the size of the numbers of which expression i is made (tape/tape.h), at the last evaluated point.
   const N& made_of(std::size_t i) const {
     if (sizes_.empty()) machine_.made_of(sizes_);

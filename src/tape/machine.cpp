@@ -420,15 +420,16 @@ void Machine<N>::made_of(std::vector<N>& sizes) const {
 
 template <Scalar N>
 N Machine<N>::terms(std::size_t root, std::size_t order) const {
-  const Instruction& alias = tape_->code[tape_->roots[root]];
-  const std::uint32_t slot = tape_->linear_terms[alias.first].slot;
+  const LinearTerm& alias = tape_->linear_terms[tape_->code[tape_->roots[root]].first];
+  const std::uint32_t slot = alias.slot;
+  const N unit = abs(rational(alias.coefficient));
   const Instruction& in = tape_->code[slot];
   N s(0);
   const auto add_product = [&](std::uint32_t a, std::uint32_t b) {
     const N *u = series(a), *v = series(b);
     for (std::size_t k = 0; k <= order; ++k) s += abs(N(u[k] * v[order - k]));
   };
-  if (in.op != Op::linear) return abs(series(slot)[order]);
+  if (in.op != Op::linear) return N(unit * abs(series(slot)[order]));
   for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
     const LinearTerm& t = tape_->linear_terms[k];
     const Instruction& term = tape_->code[t.slot];
@@ -438,7 +439,7 @@ N Machine<N>::terms(std::size_t root, std::size_t order) const {
     else
       s += abs(N(rational(t.coefficient) * series(t.slot)[order]));
   }
-  return s;
+  return N(unit * s);
 }
 
 template <Scalar N>

@@ -41,7 +41,7 @@ std::vector<std::string> columns_of_page(const PageFile& page, const RunTable& t
     for (const std::size_t k : chosen_columns(table.columns, split(page.columns), 0)) names.push_back(table.columns[k]);
     return names;
   } catch (const Failure& e) {
-    throw UsageError{"error: " + e.diagnostic.message + "\nhint: " + e.diagnostic.hint + "\n"};
+    throw usage_error(e, {});
   }
 }
 

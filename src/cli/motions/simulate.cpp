@@ -68,7 +68,7 @@ SimulationReport run(Workspace& s, const Reader& in, const SimulationOptions& op
     TwoSinks both(rows, kept);
     return motion(both);
   } catch (const Failure& e) {
-    throw UsageError{"error: " + e.diagnostic.message + "\nhint: " + e.diagnostic.hint + "\n"};
+    throw usage_error(e, in.source);
   }
 }
 

@@ -128,7 +128,7 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   try {
     if (o.mode.empty()) move_with(contacts(*p.in.names), e);
   } catch (const Failure& f) {
-    throw UsageError{"error: " + f.diagnostic.message + "\nhint: " + f.diagnostic.hint + "\n"};
+    throw usage_error(f, p.in.source);
   }
   p.table.emplace(*p.in.model, e);
   if (const std::vector<std::string> names = split(o.columns); !names.empty()) {

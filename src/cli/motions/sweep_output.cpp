@@ -1,5 +1,6 @@
 #include "cli/motions/sweep_output.h"
 
+#include "cli/input.h"
 #include "cli/motions/result_file.h"
 #include "cli/say.h"
 #include "ensemble/ending.h"
@@ -50,7 +51,7 @@ void report_sweep(const EnsembleReport& r, std::size_t cases, const SweepOutput&
 }
 
 void report_without_value(const EnsembleReport& r) {
-  for (const std::string& note : notes_without_value(r)) say(stderr, "note: %s\n", note.c_str());
+  for (const std::string& note : notes_without_value(r, asker())) say(stderr, "note: %s\n", note.c_str());
 }
 
 void report_stopped(const StoppedByKind& all, std::FILE* to) {

@@ -11,9 +11,13 @@ void check_constraints(const Scenario& s) {
   for (const std::size_t r : s.independent) {
     const Constraint& c = s.model->constraints[r];
     if (c.order > 1)
-      throw Failure(c.span, "contacts go with constraints of positions and velocities, and '" + c.name +
-                                "' holds accelerations");
-    if (c.by) throw Failure(c.span, "contacts do not go with servo constraints, as '" + c.name + "' is");
+      throw Failure(
+          c.span, "contacts go with constraints of positions and velocities, and '" + c.name + "' holds accelerations",
+          "write the constraint with velocities, such as x' = 2*t in place of x'' = 2");
+    if (c.by)
+      throw Failure(c.span, "contacts do not go with servo constraints, as '" + c.name + "' is",
+                    "leave out 'by', so that an ideal reaction keeps the constraint, or give the input a formula in "
+                    "place of the constraint");
   }
 }
 

@@ -180,7 +180,8 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
     reducer.event(e.name, e.t.value);
   }
   // Other methods, which motions with contacts use for slow slips, have no polynomials.
-  if (!report.method.turns.empty()) reducer.lose_formulas();
+  r.without_polynomials = !report.method.turns.empty();
+  if (r.without_polynomials) reducer.lose_formulas();
   const bool moved = report.outcome.ok() || report.steps > 0 || !report.events.empty();
   if (moved && !o.reductions.list.empty()) reducer.values(r.reduced);
   r.outcome = report.outcome;

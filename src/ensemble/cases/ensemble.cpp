@@ -115,7 +115,7 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
       if (!r.event.empty()) ++report.events[r.event];
       for (std::size_t k = 0; k < r.reduced.size(); ++k)
         if (const Reduction& of = o.reductions.list[k]; !of.of_event() && std::isnan(r.reduced[k]))
-          ++report.without_value[of.name];
+          report.without_value[of.name].add({1, r.without_polynomials ? std::size_t{1} : std::size_t{0}});
     }
     held -= g->cases.size();
     if (o.progress) o.progress(report.done);

@@ -103,7 +103,7 @@ void add_report(EnsembleReport& all, const EnsembleReport& next) {
   all.seconds += next.seconds;
   all.threads = next.threads;
   for (const auto& [name, cases] : next.events) all.events[name] += cases;
-  for (const auto& [name, cases] : next.without_value) all.without_value[name] += cases;
+  for (const auto& [name, cases] : next.without_value) all.without_value[name].add(cases);
   if (!next.outcome.ok()) all.outcome = next.outcome;
   for (std::size_t k : next.error.cases) all.error.cases.push_back(before + k);
   if (const auto& error = next.error.error) {
@@ -156,11 +156,18 @@ EnsembleReport judge_piece(const SweepPiece& piece, const std::function<bool()>&
   return report;
 }
 
-std::vector<std::string> notes_without_value(const EnsembleReport& r) {
+std::vector<std::string> notes_without_value(const EnsembleReport& r, const Asker& asker) {
   std::vector<std::string> notes;
-  for (const auto& [name, cases] : r.without_value)
-    notes.push_back(name + " has no value in " + std::to_string(cases) +
-                    " of the finished cases: the formula has none, or no bound, on a part of their motions");
+  const auto note = [&](const std::string& name, std::size_t cases, const std::string& why) {
+    if (cases > 0)
+      notes.push_back(name + " has no value in " + std::to_string(cases) + " of the finished cases: " + why);
+  };
+  for (const auto& [name, cases] : r.without_value) {
+    note(name, cases.all - cases.without_polynomials, "the formula has none, or no bound, on a part of their motions");
+    note(name, cases.without_polynomials,
+         "BDF computed a part of their motions, which has no polynomials; " + asker.example("method", "taylor") +
+             " has them everywhere");
+  }
   return notes;
 }
 

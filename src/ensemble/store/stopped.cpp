@@ -13,7 +13,7 @@ void count_stopped(StoppedByKind& stopped, std::size_t number, const Outcome& ou
 std::string stopped_note(OutcomeKind kind, const StoppedCases& stopped) {
   return std::string("stopped (") + name(kind) + "), " + std::to_string(stopped.count) +
          (stopped.count == 1 ? " case" : " cases") + ", first case " + std::to_string(stopped.first) + ": " +
-         stopped.outcome.message + "\nhint: " + stopped.outcome.hint;
+         stopped.outcome.message + (stopped.outcome.hint.empty() ? "" : "\nhint: " + stopped.outcome.hint);
 }
 
 std::string stopped_json(const StoppedByKind& stopped) {

@@ -24,8 +24,8 @@ std::vector<LanguageSection> language_of_bodies() {
         {"exit_point", vector, "where it does; an array is along the body axes from the centre; the centre without it"},
         {"shape", text,
          "a homogeneous solid: `disc(R)`, `ring(R)`, `cylinder(R, h)`, `torus(R, r)` about z, the full tube of radius "
-         "r around the circle of radius R, `rod(l)` along x, `ball(R)`, `shell(R)`, `box(a, b, c)`, `ellipsoid(a, b, "
-         "c)` of these half axes; beside `inertia` it is only the picture"}},
+         "r around the circle of radius R, `rod(l)` along x, `ball(R)`, `shell(R)`, `box(a, b, c)` of these edges, "
+         "`ellipsoid(a, b, c)` of these half axes; beside `inertia` it is only the picture"}},
        R"md(```toml
 [[body]]
 name = "wheel"

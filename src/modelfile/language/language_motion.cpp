@@ -256,6 +256,8 @@ stop = true
 
 - An event happens where its formula strictly changes its sign. If the formula is zero at the start, or right after an event, the event does not
   happen there; the sign that the formula takes next counts. A formula that touches zero without changing sign makes no event.
+- A formula that jumps over zero because an event sets a value makes no event: with `hits = "hits + 1"` in the `set` of `bounce`, `when = "hits - 4.5"`
+  never happens, and `when = "piecewise(hits > 3.5, y, 1)"` with `direction = "down"` passes zero with `y`, at the fifth bounce.
 - The formula must have a value all along the motion. If it has none at the start, the motion ends there, with an outcome that names the event: write
   `x - 0.51` for `sqrt(x - 0.5) - 0.1`. The motion also ends where the formula loses its value, or grows without bound, as `tan(x)` and `1/x` do.
 - Its time is located on the Taylor polynomial to round-off, whatever the tolerance. Events may hold `lambda.NAME`, `reaction(B)` and accelerations, also through `[define]`.

@@ -11,20 +11,6 @@ namespace anholon {
 // The part of a vector of length 1 that counts as round-off.
 static constexpr double kRoundOff = 1e-9;
 
-// True if a slip velocity is a multiple of the velocity of the gap.
-static bool is_along_gap(Expr gap, Expr slip) {
-  const Expr rate = total_derivative(gap);
-  Column velocities;
-  for (const NodeId id : symbols(std::vector<Expr>{rate, slip}))
-    if (const Node& n = slip.graph->node(id); n.kind == Kind::jet && n.order == 1)
-      velocities.push_back(slip.graph->jet(n.index, 1));
-  const Column n = gradient(rate, velocities), t = gradient(slip, velocities);
-  for (std::size_t i = 0; i < n.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (!proved_zero(n[i] * t[j] - n[j] * t[i])) return false;
-  return !n.empty();
-}
-
 static void check_tangential(const std::vector<Vector>& directions, const Vector& normal, const Model& model,
                              Span along, const char* hint) {
   for (const Vector& d : directions)
@@ -97,6 +83,61 @@ void check_tangential(std::vector<Vector> directions, Expr gap, const Vector& v,
                      "the normal is the gradient of the gap: name one or two directions at right angles to it");
 }
 
+// The derivatives of gap' and of a slip velocity by the velocities that they contain.
+struct Rows {
+  Column velocities, gap, slip;
+};
+
+static bool are_proportional(const Rows& rows) {
+  for (std::size_t i = 0; i < rows.gap.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!proved_zero(rows.gap[i] * rows.slip[j] - rows.gap[j] * rows.slip[i])) return false;
+  return !rows.gap.empty();
+}
+
+// True if the quotient of proportional rows is proved to hold parameters only.
+static bool have_constant_quotient(const Rows& rows) {
+  for (std::size_t i = 0; i < rows.gap.size(); ++i) {
+    const Expr n = rows.gap[i], t = rows.slip[i];
+    if (proved_zero(n)) continue;
+    for (const NodeId id : symbols(std::vector<Expr>{n, t}))
+      if (const Expr x{n.graph, id};
+          n.graph->node(id).kind != Kind::parameter && !proved_zero(partial(t, x) * n - t * partial(n, x)))
+        return false;
+    return true;
+  }
+  return false;
+}
+
+// True if the velocities move all bodies along fixed directions, without turning them.
+static bool move_straight(const Column& velocities, const Model& model) {
+  for (const Body& b : model.bodies) {
+    if (b.orientation)
+      for (const Vector& rate : columns(b.orientation->rate, velocities))
+        if (!proved_zero(rate)) return false;
+    for (const Vector& v : columns(total_derivative(b.center), velocities))
+      if (!is_constant(model, v, model.graph->zero())) return false;
+  }
+  return true;
+}
+
+// True if a slip velocity is a multiple of gap' and is known to be along the normal: the factor is constant, or the
+// bodies move along fixed directions. Otherwise a multiple may be tangential: a point that moves on a curve has one
+// coordinate, and each component of its velocity is a multiple of the rate of this coordinate.
+static bool is_along_normal(Expr gap, Expr slip, const Model& of) {
+  Rows rows;
+  const Expr rate = total_derivative(gap);
+  for (const NodeId id : symbols(std::vector<Expr>{rate, slip}))
+    if (const Node& n = slip.graph->node(id); n.kind == Kind::jet && n.order == 1)
+      rows.velocities.push_back(slip.graph->jet(n.index, 1));
+  rows.gap = gradient(rate, rows.velocities), rows.slip = gradient(slip, rows.velocities);
+  if (!are_proportional(rows)) return false;
+  const std::shared_ptr<Model> model = clone(of);
+  for (Column* c : {&rows.velocities, &rows.gap, &rows.slip})
+    for (Expr& e : *c) e = model->graph->own(e);
+  return have_constant_quotient(rows) || move_straight(rows.velocities, *model);
+}
+
 // The derivatives of gap and slip by the velocities of the coordinates that they contain, and the velocity of all
 // bodies that move with these coordinates.
 struct MovedTogether {
@@ -144,7 +185,7 @@ void check_slips(Expr gap, const std::vector<Expr>& slip, const std::string& con
   constexpr const char* kTangential =
       "the components that are tangential to the contact: slip = \"vel(B, P)\", along = [\"ex\", \"ey\"]";
   for (const Expr v : slip)
-    if (is_along_gap(gap, v))
+    if (is_along_normal(gap, v, of))
       throw Failure(place, "a slip velocity is that of the gap: it is along the normal", kTangential);
   const std::shared_ptr<Model> model = clone(of);
   const Column by = velocities(*model);

@@ -68,7 +68,8 @@ class EventReader {
     event.open_when = open_form(model_, as_read);
     const std::vector<NodeId> all = symbols({&event.when, 1});
     if (std::none_of(all.begin(), all.end(), [&](NodeId id) { return model_.graph->node(id).kind != Kind::parameter; }))
-      throw Failure(when->span, "nothing in this formula changes along the motion: it never passes zero");
+      throw Failure(when->span, "nothing in this formula changes along the motion: it never passes zero",
+                    without_motion(all));
     if (const Item* d = e.find("direction")) {
       if (d->kind != Item::Kind::string || (d->text() != "up" && d->text() != "down"))
         throw Failure(d->span, "a direction is \"up\" or \"down\"", "leave it out for both");
@@ -87,6 +88,15 @@ class EventReader {
   }
 
  private:
+  // Returns the hint for a formula that holds these parameters only.
+  std::string without_motion(const std::vector<NodeId>& parameters) const {
+    for (const NodeId id : parameters)
+      if (const Parameter& p = model_.parameters[model_.graph->node(id).index]; p.mode)
+        return "an event that sets '" + p.name + "' makes it jump over zero; when = \"piecewise(" + p.name +
+               " > 3.5, x, 1)\" passes zero with x, the formula of that event, as soon as " + p.name + " is 4";
+    return "when = \"x - 1\": a formula of coordinates, velocities, states or t";
+  }
+
   Assignment assignment(const Item& i) {
     if (!i.is_formula()) throw Failure(i.span, "a new value is a number or a formula");
     const Expr as_read = evaluate_number(parse_formula(i.formula), scope_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace anholon {
 
@@ -10,10 +11,12 @@ namespace {
 // A normal whose rise is smaller carries no weight.
 constexpr double kCarries = 1e-9;
 
+constexpr double kPlaces[] = {0.0, 0.31, -0.73};  // at which rates are compared, by the distance from the start
+
 std::optional<Translation> translation(PlaceRates& rates, const Scenario& s, std::size_t coordinate,
                                        std::size_t constraints) {
   std::optional<Translation> found;
-  for (const double away : {0.0, 0.31, -0.73}) {
+  for (const double away : kPlaces) {
     rates.go(away);
     rates.look(coordinate);
     const Triple along = rates.center(0);
@@ -44,6 +47,14 @@ std::vector<Triple> directions(const Translations& t) {
 
 bool parallel(const Triple& a, const Triple& b) { return norm(cross(a, b)) <= kSameRate * norm(a) * norm(b); }
 
+// Returns the unit normal of a plane with this gradient, against the weight; a normal that is vertical up to round-off is
+// made exactly vertical. Returns nullopt if the plane carries no weight.
+std::optional<Triple> normal_of(const Triple& plane, const Triple& up) {
+  const double rise = dot(plane, up) / norm(plane);
+  if (!(std::abs(rise) > kCarries)) return std::nullopt;
+  return 1 - std::abs(rise) <= kSameRate ? up : ((rise > 0 ? 1 : -1) / norm(plane)) * plane;
+}
+
 // Finds the common normal of the geometric constraints. Returns false if they are not floors.
 bool find_floors(Translations& all) {
   bool ground = false;
@@ -68,10 +79,8 @@ bool find_floors(Translations& all) {
     plane = n;
   }
   if (plane) {
-    const double rise = dot(*plane, all.up) / norm(*plane);
-    if (!(std::abs(rise) > kCarries)) return false;
-    // A normal that is vertical up to round-off is made exactly vertical.
-    all.normal = 1 - std::abs(rise) <= kSameRate ? all.up : ((rise > 0 ? 1 : -1) / norm(*plane)) * *plane;
+    all.normal = normal_of(*plane, all.up);
+    if (!all.normal) return false;
   }
   return !(ground && plane && !all.level());
 }
@@ -95,6 +104,50 @@ std::optional<Triple> normal_left(const Translations& all) {
   if (upwards && norm(n - all.up) > kSameRate) return std::nullopt;
   if (!(norm(n) > kCarries)) return std::nullopt;
   return norm(n - all.up) <= kSameRate ? all.up : (1 / norm(n)) * n;
+}
+
+// The constraints of velocities and their derivatives by the velocities; empty for one whose derivatives are not the
+// same everywhere.
+std::vector<std::vector<double>> constant_rows(Workspace& s) {
+  const Model& model = *s.model;
+  std::vector<std::size_t> constraints;
+  for (std::size_t r = 0; r < model.constraints.size(); ++r)
+    if (model.constraints[r].order == 1 && !model.constraints[r].by) constraints.push_back(r);
+  if (constraints.empty()) return {};
+  PlaceRates rates(s, constraints);
+  if (!rates.known()) return {};
+  std::vector<std::vector<double>> rows(constraints.size());
+  std::vector<bool> same(constraints.size(), true);
+  for (const double away : kPlaces) {
+    rates.go(away);
+    for (std::size_t a = 0; a < model.coordinates.size(); ++a) {
+      rates.look(a, 1);
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (away == kPlaces[0]) rows[k].push_back(rates.residual(k));
+        same[k] = same[k] && std::abs(rates.residual(k) - rows[k][a]) <= kSameRate * std::abs(rows[k][a]);
+      }
+    }
+  }
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (!same[k]) rows[k].clear();
+  return rows;
+}
+
+// The normal of a plane that constraints of velocities hold, as the normal component of rolling does, z' = 0: with
+// constant coefficients they hold the velocities of translations alone.
+std::optional<Triple> normal_of_velocities(const Translations& all, Workspace& s) {
+  std::optional<Triple> plane;
+  for (std::vector<double>& row : constant_rows(s)) {
+    if (row.empty()) continue;
+    std::vector<double> slopes;
+    for (const Translation& t : all.all) slopes.push_back(std::exchange(row[t.coordinate], 0));
+    if (std::any_of(row.begin(), row.end(), [](double x) { return x != 0; })) continue;
+    const std::optional<Triple> n = gradient_in_space(directions(all), slopes);
+    if (!n || !(norm(*n) > 0) || !normal_of(*n, all.up)) continue;
+    if (plane && !parallel(*n, *plane)) return std::nullopt;
+    plane = n;
+  }
+  return plane ? normal_of(*plane, all.up) : std::nullopt;
 }
 
 }  // namespace
@@ -122,6 +175,7 @@ std::optional<Translations> translations(const Scenario& s) {
   if (!find_floors(all)) return std::nullopt;
   const bool ground = std::any_of(all.gradients.begin(), all.gradients.end(), [](const auto& g) { return !g; });
   if (!all.normal && !ground) all.normal = normal_left(all);
+  if (!all.normal && !ground) all.normal = normal_of_velocities(all, own);
   if (all.normal)
     all.across = std::any_of(all.all.begin(), all.all.end(), [&](const Translation& t) {
       return std::abs(dot(t.along, *all.normal)) > kSameRate * norm(t.along);

@@ -21,7 +21,8 @@ struct Translations {
   std::vector<Translation> all;
   // The unit vector against the weight, and the unit normal of the plane on which the system stands; nullopt if the
   // ground is not a plane. The normal comes from a geometric constraint that is a floor; without such a constraint it
-  // is orthogonal to the translations, against the weight.
+  // is orthogonal to the translations, against the weight; or it comes from a constraint of velocities that holds one of
+  // them.
   Triple up;
   std::optional<Triple> normal;
   bool across = false;  // a translation leads away from the plane

@@ -71,6 +71,42 @@ initial = {z = 1.1}
   EXPECT_EQ(steps.back(), m.report.steps);
 }
 
+// A user knows no constraints NAME.gap and NAME.slip1.
+TEST(JoinedReport, AnOutcomeNamesTheContact) {
+  Model model;
+  const std::vector<Contact> contacts = named("floor", "f");
+  const auto told = [&](const std::string& message, const std::string& hint = "") {
+    JoinedReport joined(model, contacts);
+    return joined.report({OutcomeKind::singular, message, hint}, 1, 0).outcome;
+  };
+  const Outcome o = told("the constraint 'floor.gap' has lost its hold", "write the constraint in another form");
+  EXPECT_EQ(o.message, "the contact 'floor' has lost its hold");
+  EXPECT_EQ(o.hint, "write the contact in another form");
+  EXPECT_EQ(told("the constraint 'f.slip1' has lost its hold").message,
+            "the slip of the contact 'f' has lost its hold");
+  const Outcome other = told("the constraint 'rod' has lost its hold", "write the constraint in another form");
+  EXPECT_EQ(other.message, "the constraint 'rod' has lost its hold");
+  EXPECT_EQ(other.hint, "write the constraint in another form");
+}
+
+// The momentum of two carts is zero up to round-off, before and after impacts; its change is relative to its terms.
+TEST(JoinedReport, ASumThatIsZeroIsComparedWithItsTerms) {
+  const test::Motion m = test::contact_motion(R"toml(coordinates = ["x", "y"]
+particle = [{name = "a", mass = 1, position = "x*ex"}, {name = "b", mass = 3, position = "y*ex"}]
+force = [{on = "b", from = "a", vector = "-2*(y - x - 1)*ex"}]
+contact = [{name = "c", gap = "y - x - 0.8", restitution = 0.7}]
+output.P = {value = "x' + 3*y'", conserved = true}
+initial = {y = 1.3, "x'" = 3, "y'" = -1}
+)toml",
+                                              4);
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  ASSERT_EQ(test::times(m, "c.hits").size(), 2U);
+  ASSERT_EQ(m.report.conserved.size(), 1U);
+  EXPECT_LT(m.report.conserved[0].largest_change, 1e-14);
+  EXPECT_GT(m.report.conserved[0].size, 6);
+  EXPECT_TRUE(m.report.warnings.empty()) << m.report.warnings[0].message;
+}
+
 // The impact of one foot opens the contact of the standing foot.
 TEST(JoinedReport, AnImpactOpensAnotherContact) {
   const auto wheel = [](const std::string& restitution) {

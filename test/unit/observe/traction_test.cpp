@@ -95,6 +95,20 @@ TEST(Traction, IsThatOfASlope) {
   EXPECT_TRUE(notes(test::replaced(slope, "slope = 1.2626", "slope = 1.2383")).empty());
 }
 
+// The same slope, with both components of rolling and the height as a coordinate: z' = 0 holds the disc on its plane.
+TEST(Traction, IsThatOfASlopeWithTheNormalComponentOfRolling) {
+  const std::string slope = test::replaced(test::replaced(wheel(), "M = 30", "M = 0, slope = 1.2626"), "\"-g*ez\"",
+                                           "\"g*(sin(slope)*ex - cos(slope)*ez)\"");
+  const std::vector<std::string> said = notes(slope);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("constraints 'rolling.1', 'rolling.2' need a friction above 1 from t = 0 on, at least 1.05"),
+            std::string::npos)
+      << said[0];
+  EXPECT_TRUE(notes(test::replaced(slope, "slope = 1.2626", "slope = 1.2383")).empty());
+  // A guide along a line is no floor.
+  EXPECT_TRUE(notes(test::replaced(slope, "along = [\"ex\", \"ez\"]", "along = [\"ex\", \"ez + x*ex\"]")).empty());
+}
+
 TEST(Traction, IsUnknownWithoutAFloor) {
   const auto any = [](const std::string& text) {
     Scenario s;
