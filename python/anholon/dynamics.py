@@ -50,7 +50,8 @@ class Dynamics:
     @property
     def states(self) -> list[_core.StateName]:
         """The entries of x: coordinates, velocities (or independent ones, with their formulas), higher derivatives if
-        constraints of order 2 or more need them, then the model's states."""
+        constraints of order 2 or more need them, then the model's states. Independent velocities are called u1, u2, …, and a name
+        that the model has gets a number: u1_2."""
         return self._core.states
 
     @property

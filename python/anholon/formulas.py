@@ -260,7 +260,8 @@ class Formulas:
 
 
 class SymPyRates:
-    """Rates and outputs as SymPy expressions with the exact numbers of the model. Their symbols have the names of the model.
+    """Rates and outputs as SymPy expressions with the exact numbers of the model. Their symbols have the names of the model; independent
+    velocities have the names of :attr:`Dynamics.states`.
 
     If ``matrix`` is not None, the rates are not explicit: they hold the symbols ``lead``, which solve ``matrix * lead = right``.
     """

@@ -119,7 +119,8 @@ void Dynamics::put_independent_velocities(const System& s, const Representation&
   map_ = std::shared_ptr<const StateMap>(mapped.plan, mapped.plan->map());
   values_ = n;
   for (std::size_t a = 0; a < n; ++a) states_.push_back({s.variable_names[a], {}});
-  for (std::size_t i = 0; i < velocities; ++i) states_.push_back({"u" + std::to_string(i + 1), mapped.velocities[i]});
+  for (std::size_t i = 0; i < velocities; ++i)
+    states_.push_back({automatic_name(*s.model, "u" + std::to_string(i + 1)), mapped.velocities[i]});
   for (std::size_t z = s.mechanical(); z < s.size(); ++z) states_.push_back({s.variable_names[z], {}});
   for (std::size_t j = 0; j < mapped.plan->plan().x.size(); ++j)
     unknowns_.push_back({{j < n ? j : j < n + model_states_ ? velocities + j : j - model_states_}});

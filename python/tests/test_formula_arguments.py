@@ -1,0 +1,93 @@
+"""Names, lengths and singular states of the arguments of formulas."""
+
+from collections.abc import Callable
+from typing import Any
+
+import anholon as an
+import numpy as np
+import pytest
+
+# A car on a plane with a thrust and a torque, whose independent velocities would be called u1 and u2.
+CAR = """
+coordinates = ["x", "y", "th"]
+parameters = {m = 2, J = 1.5}
+input = {u1 = "1 + x", u2 = "3*u1"}
+body = [{name = "car", mass = "m", inertia = "J", center = "x*ex + y*ey", angle = "th"}]
+force = [{on = "car", vector = "u1*car.x"}, {on = "car", torque = "u2*ez"}]
+constraint = [{name = "edge", equation = "dot(vel(car.center), car.y) = 0"}]
+initial = {"x'" = 1, "th'" = 0.5}
+monitor = {power = "u1*x'"}
+"""
+
+# A particle whose mass matrix is singular where y = 0.
+FOLD = """
+coordinates = ["x", "y"]
+parameters = {m = 1}
+particle = [{name = "b", mass = "m", position = "x*ex + y^2*ey"}]
+force = [{on = "b", vector = "-x*ex + ey"}]
+initial = {x = 1, y = 0.5}
+"""
+
+# The force along y moves the particle b, whose mass is 0, so that y has no acceleration.
+MASSLESS = """
+coordinates = ["x", "y"]
+parameters = {m = 0, k = 2}
+particle = [{name = "b", mass = "m", position = "x*ex + y*ey"}, {name = "c", mass = 1, position = "x*ex"}]
+force = [{on = "b", vector = "(-k*y - y')*ey"}, {on = "c", vector = "y*ex"}]
+initial = {x = 1, y = 2}
+monitor = {power = "k*y*y'"}
+"""
+
+
+def state(f: an.Dynamics) -> Any:
+    return f.start + 0.1 * np.cos(np.arange(len(f.start)))
+
+
+def agree(f: an.Dynamics, x: Any, u: Any, p: Any) -> None:
+    """Compares all kinds of formulas with the compiled function."""
+    rates, outputs = f(0.3, x, u, p), f.output(0.3, x, u, p)
+
+    def equal(found: Any) -> None:
+        for have, expected in zip(found, (rates, outputs), strict=True):
+            np.testing.assert_allclose(np.array(have, dtype=float).reshape(-1), expected, rtol=1e-12, atol=1e-14)
+
+    equal(f.formulas.numpy()(0.3, x, u, p))
+    equal(f.formulas.mpmath(0.3, list(x), list(u), list(p)))
+    if jax := have("jax"):
+        jax.config.update("jax_enable_x64", True)
+        equal(f.formulas.jax()(0.3, x, u, p))
+    if have("casadi"):
+        equal(f.formulas.casadi()(0.3, x, u, p))
+        equal(f.casadi()(0.3, x, u, p))
+    if have("sympy"):
+        s = f.formulas.sympy()
+        symbols = [s.t, *s.x, *s.u, *s.p]
+        assert len({symbol.name for symbol in symbols}) == len(symbols)
+        values = dict(zip(symbols, (0.3, *x, *u, *p), strict=True))
+        if s.matrix is not None:
+            values |= dict(zip(s.lead, s.matrix.subs(values).LUsolve(s.right.subs(values)), strict=True))
+        equal((s.rates.subs(values), s.outputs.subs(values)))
+
+
+def have(module: str) -> Any:
+    try:
+        return pytest.importorskip(module)
+    except pytest.skip.Exception:
+        return None
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        (CAR, ["x", "y", "th", "u1_2", "u2_2"]),
+        (CAR.replace("u2", "q"), ["x", "y", "th", "u1_2", "u2"]),
+        (CAR.replace("u1", "f").replace("u2", "g").replace('"th', '"u1').replace("th'", "u1'"), ["x", "y", "u1", "u1_2", "u2"]),
+        (CAR.replace("u1", "f").replace("u2", "g").replace("m = 2", "u1 = 2").replace('"m"', '"u1"'), ["x", "y", "th", "u1_2", "u2"]),
+        (CAR.replace("u1", "f").replace("u2", "g"), ["x", "y", "th", "u1", "u2"]),
+    ],
+    ids=["inputs", "an input", "a coordinate", "a parameter", "none"],
+)
+def test_independent_velocities_have_names_of_their_own(text: str, names: list[str]) -> None:
+    f = an.loads(text).dynamics(inputs=True)
+    assert [s.name for s in f.states] == names
+    agree(f, state(f), f.u0 + [0.5, -0.25], f.p0 + [0.5, 0.75])
