@@ -56,7 +56,8 @@ class Dynamics:
 
     @property
     def inputs(self) -> list[str]:
-        """The entries of u: the inputs of the model that are arguments."""
+        """The entries of u: the inputs of the model that are arguments, in the order in which they were asked for, or in that of
+        the model if all are arguments."""
         return self._core.inputs
 
     @property

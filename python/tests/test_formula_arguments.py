@@ -91,3 +91,21 @@ def test_independent_velocities_have_names_of_their_own(text: str, names: list[s
     f = an.loads(text).dynamics(inputs=True)
     assert [s.name for s in f.states] == names
     agree(f, state(f), f.u0 + [0.5, -0.25], f.p0 + [0.5, 0.75])
+
+
+def test_inputs_have_the_order_in_which_they_are_asked_for() -> None:
+    model = an.loads(CAR)
+    ab, ba = model.dynamics(inputs=["u1", "u2"]), model.dynamics(inputs=["u2", "u1"])
+    assert ab.inputs == ["u1", "u2"] == model.dynamics(inputs=True).inputs
+    assert ba.inputs == ["u2", "u1"]
+    x, u, swapped = state(ab), np.array([0.5, 2.0]), np.array([2.0, 0.5])
+    np.testing.assert_array_equal(ba.u0, ab.u0[::-1])
+    np.testing.assert_array_equal(ba(0, x, swapped), ab(0, x, u))
+    np.testing.assert_array_equal(ba(0, x), ab(0, x))
+    np.testing.assert_array_equal(ba(0, x, {"u1": 0.5}), ab(0, x, {"u1": 0.5}))
+    np.testing.assert_array_equal(ba.input(0, x), ab.input(0, x)[::-1])
+    np.testing.assert_array_equal(ba.output(0, x, swapped), ab.output(0, x, u))
+    np.testing.assert_allclose(ba.jac(0, x, swapped, by="u"), ab.jac(0, x, u, by="u")[:, ::-1], rtol=1e-15)
+    agree(ba, x, swapped, ba.p0)
+    with pytest.raises(an.ModelError, match=r"the input 'u1' is given twice"):
+        model.dynamics(inputs=["u1", "u2", "u1"])
