@@ -62,8 +62,8 @@ class Dynamics:
 
     @property
     def parameters(self) -> list[str]:
-        """The entries of p: the parameters that do not follow from others, except those whose values decide the order of the
-        equations, such as a mass that is 0. Modes are entries of p, too; f does not change them, as it has no events."""
+        """The entries of p: the parameters that do not follow from others, except vectors and those whose values decide the order
+        of the equations, such as a mass that is 0. Modes are entries of p, too; f does not change them, as it has no events."""
         return self._core.parameters
 
     @property
@@ -141,7 +141,7 @@ class Dynamics:
             fixed = next((name for name in labelled if what == "p" and name not in names and name in self.model.parameters), None)
             if fixed is not None:
                 raise KeyError(
-                    f"{fixed!r} is not in p: it follows from other parameters, or its value decides the order of the equations; "
+                    f"{fixed!r} is not in p: it is a vector, follows from other parameters, or its value decides the order of the equations; "
                     f"the model has a function for another value, model.with_({fixed}=...).dynamics()"
                 )
             given = in_order(labelled, names, usual, what)

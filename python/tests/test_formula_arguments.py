@@ -109,3 +109,20 @@ def test_inputs_have_the_order_in_which_they_are_asked_for() -> None:
     agree(ba, x, swapped, ba.p0)
     with pytest.raises(an.ModelError, match=r"the input 'u1' is given twice"):
         model.dynamics(inputs=["u1", "u2", "u1"])
+
+
+def test_a_vector_is_no_entry_of_the_parameters() -> None:
+    text = """
+    coordinates = ["x", "y"]
+    parameters = {a = 3, axis = [1, 2, "a"], k = 2, far = "k*ex"}
+    particle = [{name = "b", mass = 1, position = "x*ex + y*ey"}]
+    force = [{on = "b", vector = "cross(axis, vel(b)) + k*axis + far"}]
+    initial = {x = 1, "y'" = 0.3}
+    """
+    f = an.loads(text).dynamics()
+    assert f.parameters == ["a", "k"]
+    np.testing.assert_allclose(f(0, f.start)[2:], [-3 * 0.3 + 2 + 2, 4])
+    np.testing.assert_allclose(f(0, f.start, p={"a": 5})[2:], [-5 * 0.3 + 2 + 2, 4])
+    agree(f, state(f), f.u0, f.p0 + 1)
+    with pytest.raises(KeyError, match="'axis' is not in p: it is a vector"):
+        f(0, f.start, p={"axis": 1})

@@ -150,7 +150,8 @@ void Dynamics::put_state_of_motion(const System& s, const std::vector<int>& d) {
     for (int k = 0; k < d[j]; ++k) add(j, k);
 }
 
-// A parameter follows from others if its value contains symbols; the inputs are the last parameters.
+// A parameter follows from others if its value contains symbols; the inputs are the last parameters. The components of
+// a vector parameter stand in the equations as numbers or as formulas of other parameters.
 void Dynamics::find_free_parameters(const Model& model, std::size_t inputs) {
   inputs_ = inputs;
   Graph& g = *model.graph;
@@ -159,7 +160,7 @@ void Dynamics::find_free_parameters(const Model& model, std::size_t inputs) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool follows = !symbols({&values[i], 1}).empty();
     some_follow_ = some_follow_ || follows;
-    if (!follows && i + inputs < values.size()) free_.push_back(i);
+    if (!follows && !model.parameters[i].vector && i + inputs < values.size()) free_.push_back(i);
     if (!follows) values[i] = g.parameter(static_cast<std::uint32_t>(i));
   }
   for (std::size_t depth = 0; depth < values.size(); ++depth)
