@@ -126,3 +126,11 @@ def test_a_vector_is_no_entry_of_the_parameters() -> None:
     agree(f, state(f), f.u0, f.p0 + 1)
     with pytest.raises(KeyError, match="'axis' is not in p: it is a vector"):
         f(0, f.start, p={"axis": 1})
+
+
+def test_formulas_of_a_coordinate_without_mass() -> None:
+    f = an.loads(MASSLESS).dynamics()
+    assert [s.name for s in f.states] == ["x", "y", "x'"]
+    np.testing.assert_allclose(f(0, f.start), [0, -4, 2])
+    agree(f, state(f), f.u0, f.p0 + 0.5)
+    assert "m" not in f.formulas.source.split("PARAMETERS = ")[1].split("\n")[0]
