@@ -111,6 +111,38 @@ def test_inputs_have_the_order_in_which_they_are_asked_for() -> None:
         model.dynamics(inputs=["u1", "u2", "u1"])
 
 
+def test_a_singular_state_of_a_batch_has_rates_that_are_nan() -> None:
+    f = an.loads(FOLD).dynamics()
+    x = np.array([[1.0, 1, 1, 2], [0.5, 0, 0.6, 0], [0, 0.2, 0, 0], [0, 0, 0.1, 0]])
+    rates, _ = f.formulas.numpy()(0, x)
+    np.testing.assert_array_equal(np.isnan(rates).any(0), [False, True, False, True])
+    for k in (0, 2):
+        np.testing.assert_array_equal(rates[:, k], f.formulas.numpy()(0, x[:, k])[0])
+        np.testing.assert_allclose(rates[:, k], f(0, x[:, k]), rtol=1e-14)
+    np.testing.assert_array_equal(f.formulas.numpy()(0, x[:, 1])[0], [0.2, 0, np.nan, np.nan])
+    shaped, _ = f.formulas.numpy()(0, x.reshape(4, 2, 2))
+    np.testing.assert_array_equal(shaped, rates.reshape(4, 2, 2))
+    assert f.formulas.numpy()(0, x[:, :0])[0].shape == (4, 0)
+
+
+@pytest.mark.parametrize("library", ["numpy", "jax", "mpmath"])
+def test_arguments_of_other_lengths_are_refused(library: str) -> None:
+    pytest.importorskip(library)
+    f = an.loads(CAR).dynamics(inputs=True)
+    g: Callable[..., Any] = f.formulas.mpmath if library == "mpmath" else getattr(f.formulas, library)()
+    x, u, p = f.start, f.u0, f.p0
+    g(0, x, u, p), g(0, list(x), list(u), tuple(p)), g(0, x)
+    for given, said in [
+        ((x[:3],), "x has 3 entries; its first axis has to be the 5 states"),
+        ((list(x) + [0.0],), "x has 6 entries; its first axis has to be the 5 states"),
+        ((1.0,), "x has no axis; its first axis has to be the 5 states"),
+        ((x, u[:1]), "u has 1 entries; its first axis has to be the 2 inputs"),
+        ((x, None, [*p, 1.0]), "p has 3 entries; its first axis has to be the 2 parameters"),
+    ]:
+        with pytest.raises(ValueError, match=said):
+            g(0, *given)
+
+
 def test_a_vector_is_no_entry_of_the_parameters() -> None:
     text = """
     coordinates = ["x", "y"]
