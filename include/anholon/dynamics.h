@@ -12,7 +12,8 @@ struct DynamicsOptions {
   // the equations have them; else in the state of the motion: all coordinates and velocities, and higher derivatives
   // where constraints of order 2 and more ask for them.
   bool minimal = true;
-  // Whether inputs of the model are arguments u: all that can be set, or those named. Else their formulas stand in f.
+  // Whether inputs of the model are arguments u: all that can be set, or those named, in this order. Else their formulas
+  // stand in f.
   bool inputs = false;
   std::vector<std::string> input_names = {};
   // Instead of all monitors and outputs of the model: some by their names, or formulas in the names of the model, also of

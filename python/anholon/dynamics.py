@@ -50,18 +50,20 @@ class Dynamics:
     @property
     def states(self) -> list[_core.StateName]:
         """The entries of x: coordinates, velocities (or independent ones, with their formulas), higher derivatives if
-        constraints of order 2 or more need them, then the model's states."""
+        constraints of order 2 or more need them, then the model's states. Independent velocities are called u1, u2, …, and a name
+        that the model has gets a number: u1_2."""
         return self._core.states
 
     @property
     def inputs(self) -> list[str]:
-        """The entries of u: the inputs of the model that are arguments."""
+        """The entries of u: the inputs of the model that are arguments, in the order in which they were asked for, or in that of
+        the model if all are arguments."""
         return self._core.inputs
 
     @property
     def parameters(self) -> list[str]:
-        """The entries of p: the parameters that do not follow from others, except those whose values decide the order of the
-        equations, such as a mass that is 0. Modes are entries of p, too; f does not change them, as it has no events."""
+        """The entries of p: the parameters that do not follow from others, except vectors and those whose values decide the order
+        of the equations, such as a mass that is 0. Modes are entries of p, too; f does not change them, as it has no events."""
         return self._core.parameters
 
     @property
@@ -139,7 +141,7 @@ class Dynamics:
             fixed = next((name for name in labelled if what == "p" and name not in names and name in self.model.parameters), None)
             if fixed is not None:
                 raise KeyError(
-                    f"{fixed!r} is not in p: it follows from other parameters, or its value decides the order of the equations; "
+                    f"{fixed!r} is not in p: it is a vector, follows from other parameters, or its value decides the order of the equations; "
                     f"the model has a function for another value, model.with_({fixed}=...).dynamics()"
                 )
             given = in_order(labelled, names, usual, what)

@@ -26,6 +26,15 @@ NO_FORMULAS_OF_INPUTS = (
     "the formulas of the inputs hold what the equations are solved for\nhint: give u, for instance f.input(t, x) of the function f that these formulas are of"
 )
 
+
+def _refuse_other_length(name: str, values: Any, count: int, of: str) -> None:
+    """Raises ValueError unless `values`, a sequence or an array, has this number of entries in its first axis."""
+    shape = getattr(values, "shape", None)
+    found = (shape[0] if len(shape) > 0 else None) if isinstance(shape, tuple) else len(values) if hasattr(values, "__len__") else None
+    if found != count:
+        raise ValueError(f"{name} has {'no axis' if found is None else f'{found} entries'}; its first axis has to be the {count} {of}")
+
+
 # NumPy's names of elementary functions, with the names in libraries that call them differently.
 _SHORT = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh"}
 
@@ -146,8 +155,12 @@ class Formulas:
         """Returns u and p. If u is None, the formulas of the model give it; if p is None, the parameters of the model do.
 
         Raises:
+            ValueError: x, u or p has another number of entries than the function.
             ModelError: u is None, and the formulas of the inputs hold unknowns of the equations.
         """
+        for name, values, key, of in (("x", x, "STATES", "states"), ("u", u, "INPUTS", "inputs"), ("p", p, "PARAMETERS", "parameters")):
+            if name == "x" or values is not None:
+                _refuse_other_length(name, values, len(self._module[key]), of)
         module = self._module if number is None else self._with_numbers(number)
         if p is None:
             p = self._module["DEFAULTS"] if number is None else module["defaults"](library)
@@ -160,16 +173,26 @@ class Formulas:
     def numpy(self) -> Callable[..., Any]:
         """Returns a function f(t, x, u, p) -> (x', y) of NumPy only, with the shapes of :class:`Dynamics`.
 
-        Without u the inputs follow the formulas of the model.
+        Without u the inputs follow the formulas of the model. For a state at which the linear equations of the unknowns are singular
+        the unknowns are NaN, and so are the rates and outputs that contain them. Other states of a batch have their values.
+        The function raises ValueError if x, u or p has another number of entries than :class:`Dynamics`.
         """
         import numpy as np
+
+        def solved(a: Any, b: Any) -> Any:
+            """Returns the solutions of many systems. np.linalg.solve refuses all of them if one is singular."""
+            try:
+                return np.linalg.solve(a, b)
+            except np.linalg.LinAlgError:
+                half = len(a) // 2
+                return np.concatenate([solved(a[:half], b[:half]), solved(a[half:], b[half:])]) if half > 0 else np.full_like(b, np.nan)
 
         def solve(matrix: list[list[Any]], right: list[Any]) -> Any:
             rows = np.stack(np.broadcast_arrays(*(entry for row in matrix for entry in row), *right))
             n = len(right)
             a = np.moveaxis(rows[: n * n].reshape(n, n, *rows.shape[1:]), (0, 1), (-2, -1))
             b = np.moveaxis(rows[n * n :], 0, -1)[..., None]
-            return np.moveaxis(np.linalg.solve(a, b)[..., 0], -1, 0)
+            return np.moveaxis(solved(a.reshape(-1, n, n), b.reshape(-1, n, 1)).reshape(*b.shape[:-1]), -1, 0)
 
         def f(t: Any, x: Any, u: Any = None, p: Any = None) -> Any:
             x = np.asarray(x, dtype=float)
@@ -187,7 +210,8 @@ class Formulas:
 
         Without u the inputs follow the formulas of the model. JAX computes with 32 bits unless
         ``jax.config.update("jax_enable_x64", True)`` is called before. Reverse derivatives compute the formulas again instead of
-        storing their intermediate values.
+        storing their intermediate values. The function raises ValueError if x, u or p has another number of entries than
+        :class:`Dynamics`.
         """
         import jax
         import jax.numpy as jnp
@@ -244,6 +268,9 @@ class Formulas:
         """Returns the rates and outputs (x', y) of one state, two lists, with as many digits as mpmath is set to.
 
         Without u the inputs follow the formulas of the model. Without p the parameters of the model are used, with all their digits.
+
+        Raises:
+            ValueError: x, u or p has another number of entries than :class:`Dynamics`.
         """
         import mpmath
 
@@ -260,7 +287,8 @@ class Formulas:
 
 
 class SymPyRates:
-    """Rates and outputs as SymPy expressions with the exact numbers of the model. Their symbols have the names of the model.
+    """Rates and outputs as SymPy expressions with the exact numbers of the model. Their symbols have the names of the model; independent
+    velocities have the names of :attr:`Dynamics.states`.
 
     If ``matrix`` is not None, the rates are not explicit: they hold the symbols ``lead``, which solve ``matrix * lead = right``.
     """

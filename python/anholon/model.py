@@ -393,16 +393,16 @@ class Model(Analysed):
             minimal: True takes independent velocities, any values of which satisfy the constraints, if the equations have them.
                 Else x is the state of the motion: all coordinates and velocities, and higher derivatives if constraints of
                 order 2 or more need them.
-            inputs: the inputs of the model that are arguments u: True for all that can be set, names, or False for none. f
-                computes the other inputs by their formulas.
+            inputs: the inputs of the model that are arguments u: True for all that can be set, in the order of the model; names,
+                whose order is that of u; or False for none. f computes the other inputs by their formulas.
             outputs: instead of all monitors and outputs of the model: some of them, formulas in names of the model, or
                 ``{name: formula}``. ``lambda.NAME`` is a multiplier, ``reaction(BODY)`` the force of the constraints;
                 both need ``minimal=False``. A vector gives ``name.x``, ``name.y``, ``name.z``.
             initial: values instead of those of the file, for ``f.start``.
 
         Raises:
-            ModelError: the equations have no solution at the start, an input cannot be set from outside, or an output
-                is not known.
+            ModelError: the equations have no solution at the start, an input cannot be set from outside or is given twice, or
+                an output is not known.
 
         Example:
             >>> import anholon as an, numpy as np

@@ -119,7 +119,8 @@ void Dynamics::put_independent_velocities(const System& s, const Representation&
   map_ = std::shared_ptr<const StateMap>(mapped.plan, mapped.plan->map());
   values_ = n;
   for (std::size_t a = 0; a < n; ++a) states_.push_back({s.variable_names[a], {}});
-  for (std::size_t i = 0; i < velocities; ++i) states_.push_back({"u" + std::to_string(i + 1), mapped.velocities[i]});
+  for (std::size_t i = 0; i < velocities; ++i)
+    states_.push_back({automatic_name(*s.model, "u" + std::to_string(i + 1)), mapped.velocities[i]});
   for (std::size_t z = s.mechanical(); z < s.size(); ++z) states_.push_back({s.variable_names[z], {}});
   for (std::size_t j = 0; j < mapped.plan->plan().x.size(); ++j)
     unknowns_.push_back({{j < n ? j : j < n + model_states_ ? velocities + j : j - model_states_}});
@@ -149,7 +150,8 @@ void Dynamics::put_state_of_motion(const System& s, const std::vector<int>& d) {
     for (int k = 0; k < d[j]; ++k) add(j, k);
 }
 
-// A parameter follows from others if its value contains symbols; the inputs are the last parameters.
+// A parameter follows from others if its value contains symbols; the inputs are the last parameters. The components of
+// a vector parameter stand in the equations as numbers or as formulas of other parameters.
 void Dynamics::find_free_parameters(const Model& model, std::size_t inputs) {
   inputs_ = inputs;
   Graph& g = *model.graph;
@@ -158,7 +160,7 @@ void Dynamics::find_free_parameters(const Model& model, std::size_t inputs) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     const bool follows = !symbols({&values[i], 1}).empty();
     some_follow_ = some_follow_ || follows;
-    if (!follows && i + inputs < values.size()) free_.push_back(i);
+    if (!follows && !model.parameters[i].vector && i + inputs < values.size()) free_.push_back(i);
     if (!follows) values[i] = g.parameter(static_cast<std::uint32_t>(i));
   }
   for (std::size_t depth = 0; depth < values.size(); ++depth)

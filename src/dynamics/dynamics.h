@@ -38,7 +38,7 @@ class Dynamics {
 
   // The state x: coordinates, velocities (q', or independent ones), higher derivatives, then the model's states.
   struct State {
-    std::string name;     // "x", "x'", "x''", "u1", "z"
+    std::string name;     // "x", "x'", "x''", "u1" ("u1_2" if the model has a u1), "z"
     std::string meaning;  // of an independent velocity: its formula in q and q'; otherwise empty
   };
   const std::vector<State>& states() const { return states_; }

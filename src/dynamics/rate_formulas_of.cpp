@@ -151,18 +151,31 @@ class Builder {
     return true;
   }
 
-  // Replaces parameters that follow from others by their formulas.
+  // Replaces parameters that follow from others by their formulas, and then those that decide the order of the equations
+  // by their values: m q'' with m = 0 holds no unknown.
   void put_parameters() {
-    if (motion_.derived.empty()) return;
     Column formulas;
     for (const std::size_t i : motion_.derived) formulas.push_back(motion_.parameters[i]);
+    put_parameters(motion_.derived, formulas);
+    const std::vector<Parameter>& parameters = s_.model->parameters;
+    const std::vector<std::size_t>& free = of_.free_parameters();
+    std::vector<std::size_t> fixed;
+    Column values;
+    for (std::size_t i = 0; i < parameters.size() - of_.inputs(); ++i)
+      if (std::find(free.begin(), free.end(), i) == free.end() && symbols({&parameters[i].value, 1}).empty())
+        fixed.push_back(i), values.push_back(parameters[i].value);
+    put_parameters(fixed, values);
+  }
+
+  void put_parameters(const std::vector<std::size_t>& indices, Column formulas) {
+    if (indices.empty()) return;
     if (f_.model != s_.model) formulas = copied(formulas, *f_.model->graph);
     for (Column* es : {&f_.rates, &f_.equations, &f_.outputs, &f_.input_formulas, &f_.open_input_formulas})
       *es = substitute(*es, [&](NodeId id) {
         const Node& n = f_.model->graph->node(id);
         if (n.kind != Kind::parameter) return Expr{};
         for (std::size_t k = 0; k < formulas.size(); ++k)
-          if (motion_.derived[k] == n.index) return formulas[k];
+          if (indices[k] == n.index) return formulas[k];
         return Expr{};
       });
   }

@@ -32,6 +32,9 @@ struct Parameter {
   std::string doc;
   Span span;
   bool mode = false;  // [mode]: constant between events; `value` is its value at the start
+  // The value is a vector, which formulas contain in place of the name; `value` is then zero, and no formula contains
+  // this parameter.
+  bool vector = false;
 };
 
 // The observer's frame: moving components of its angular velocity and of the inertial acceleration

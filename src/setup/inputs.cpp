@@ -158,21 +158,27 @@ InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std
   Workspace own(s);
   std::set<std::size_t> given;
   for (const InputFormula& u : opened(own, wanted, true).inputs) given.insert(u.control);
-  for (const std::string& name : names)
-    if (const auto at = std::find(known.begin(), known.end(), name); at == known.end()) {
+  std::vector<std::size_t> order;  // the inputs in the order of `names`, or of the model
+  for (const std::string& name : names) {
+    const std::size_t k = static_cast<std::size_t>(std::find(known.begin(), known.end(), name) - known.begin());
+    if (k == known.size()) {
       const std::string near = did_you_mean(name, known);
       throw Failure({}, "there is no input '" + name + "'",
                     !near.empty()   ? "did you mean '" + near + "'?"
                     : known.empty() ? "[input] declares inputs"
                                     : "");
-    } else if (!given.count(static_cast<std::size_t>(at - known.begin()))) {
-      throw Failure({}, "the input '" + name + "' cannot be set from outside",
-                    why_not(s.model->controls[static_cast<std::size_t>(at - known.begin())]));
     }
+    if (!given.count(k))
+      throw Failure({}, "the input '" + name + "' cannot be set from outside", why_not(s.model->controls[k]));
+    if (std::find(order.begin(), order.end(), k) != order.end())
+      throw Failure({}, "the input '" + name + "' is given twice", "each input is one entry of u");
+    order.push_back(k);
+  }
+  if (names.empty()) order.assign(given.begin(), given.end());
   const std::shared_ptr<Model> m = given_model(s);
   InputsAsParameters out{m, {}, {}, {}, {}};
   std::map<std::size_t, Expr> formulas;
-  for (const std::size_t k : given) {
+  for (const std::size_t k : order) {
     Control& u = m->controls[k];
     formulas.emplace(k, *u.value);
     const Rational value = value_at_start(s, *m, *u.value);
@@ -190,7 +196,7 @@ InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std
   });
   put_inputs_into_inputs(*m, given);
   put_inputs(*m);
-  for (const std::size_t k : given) out.open_formulas.push_back(with_inputs_as_parameters(*m, k, formulas).id);
+  for (const std::size_t k : order) out.open_formulas.push_back(with_inputs_as_parameters(*m, k, formulas).id);
   return out;
 }
 

@@ -31,8 +31,9 @@ struct InputsAsParameters {
   std::vector<NodeId> open_formulas;  // the same, in terms of the parameters that are inputs
   std::vector<std::string> left_out;  // monitors that hold the rate of an input, which has no value
 };
-// Makes the inputs in `names` parameters; if `names` is empty, all inputs that can be set, also those that act only in
-// other inputs. Throws Failure for a name that is no input or belongs to an input that cannot be set.
+// Makes the inputs in `names` parameters, in the order of `names`; if `names` is empty, all inputs that can be set, also
+// those that act only in other inputs, in the order of the model. Throws Failure for a name that is no input, belongs to
+// an input that cannot be set, or is given twice.
 InputsAsParameters inputs_as_parameters(const Scenario& scenario, const std::vector<std::string>& names = {});
 
 }  // namespace anholon

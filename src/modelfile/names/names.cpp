@@ -209,6 +209,7 @@ Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
     }
     if (Vector* a = std::get_if<Vector>(&v)) {
       for (int i = 0; i < 3; ++i) check((*a)[i]);
+      model_.parameters[d.index].vector = true;
       return v;
     }
     throw Failure(d.span, std::string("a parameter is a number or a vector, this is ") + type_name(v));
