@@ -31,4 +31,4 @@ def test_no_parameters() -> None:
 
 def test_closed_form() -> None:
     model = anholon.loads('coordinates = ["x"]\nparticle = [{name = "p", mass = 2, position = "x*ex"}]\nforce = [{name = "f", on = "p", vector = "x^2*ex"}]\n')
-    np.testing.assert_allclose(model.dynamics().jac(0.0, [0.5, 0.1]), [[0, 1], [0.5, 0]], rtol=1e-15)
+    np.testing.assert_allclose(model.dynamics().jac(0.0, [0.5, 0.1]), np.array([[0.0, 1.0], [0.5, 0.0]]), rtol=1e-15)
