@@ -138,6 +138,8 @@ class Analysed(Described):
     ) -> LinearModel:
         """Computes the linear model z' = A z + B u, y = C z + D u, in which u are the inputs of the file and y its outputs.
 
+        An input with a formula is a feedback, which A contains; u is then what is added to the formula.
+
         Args:
             about: ``"state"`` for the initial state, ``"equilibrium"`` for the state of rest near the initial positions.
             initial: values instead of those of the file; for an equilibrium, the positions at which the search begins.

@@ -25,6 +25,7 @@ void add_linearize(CommandLine& line) {
       cli::linearize,
       "About the initial state, which may be an equilibrium or a steady motion: [initial] conditions = "
       "[\"theta'' = 0\", …] finds one.\n"
+      "An input with a formula is a feedback, which A contains; B belongs to what is added to it.\n"
       "Exit status: 0 ok, 1 no linear model at some value, 2 bad input.\n"
       "Example: anholon linearize whipple --vary v=0..10:1");
   parameters(c, o), state(c, o), form_option(c, o), mode_of_contacts(c, o);
