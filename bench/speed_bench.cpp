@@ -49,8 +49,8 @@ struct Request {
 struct Ready {
   Scenario scenario;
   std::unique_ptr<Program> stepping;
-  std::map<std::pair<double, Company>, std::shared_ptr<const KernelPlan>>
-      plans;                                             // by tolerance, and for one motion alone or for lanes
+  // By tolerance, and for one motion alone or for lanes.
+  std::map<std::pair<double, Company>, std::shared_ptr<const KernelPlan>> plans;
   double read = 0, scenario_made = 0, program_made = 0;  // seconds
   double plan_made = 0, compiled = 0;                    // of the last of the plans
 };

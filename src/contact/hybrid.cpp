@@ -337,7 +337,7 @@ class HybridMotion {
         m.rest = std::max(kRest * place.slip_scale, slip_in_last_digits_of_time(c, now.x));
         if (open) m.rest = std::max(m.rest, slip_in_last_digits_of_time(c, open->x));
       }
-      m.depth = RoundOff::kDepth * bodies_.near.place_size(c) + std::max(0.0L, -place.gap);
+      m.depth = bodies_.near.depth(c) + std::max(0.0L, -place.gap);
       m.closed = m.touch == Touch::open && bodies_.near.closed(c) && bodies_.near.gap_is_round_off(c);
       m.slack = kRest * (force > 0 ? force : 1);
       if (bodies_.contacts[c].under) m.slack *= p.contacts[c].friction;

@@ -22,9 +22,9 @@ static bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(
 
 // The model of a mode has constraints NAME.gap and NAME.slip1, …, inputs NAME.n and NAME.t1, … that keep them, and two
 // events of a change that differ by a prime. A user knows the contact, the forces lambda.NAME and lambda.NAME.t1, and
-// the events; their names replace those of the model.
-static void put_known_names(const std::string& contact, std::string& text) {
-  const std::string lambda = "lambda.", monitor = "monitor '", name = contact + ".";
+// the events; their names replace those of the model. Returns true if the text has changed.
+static bool put_known_names(const std::string& contact, std::string& text) {
+  const std::string given = text, lambda = "lambda.", monitor = "monitor '", name = contact + ".";
   for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
     std::size_t begin = at;
     const bool force = at >= lambda.size() && text.compare(at - lambda.size(), lambda.size(), lambda) == 0;
@@ -50,6 +50,7 @@ static void put_known_names(const std::string& contact, std::string& text) {
       while (quoted && text.compare(end, 2, "\'\'") == 0) text.erase(end, 1);
     at = text.find(contact, begin);
   }
+  return text != given;
 }
 
 // Joins watched numbers; the change is that from the start of the whole motion.
@@ -221,9 +222,9 @@ void JoinedReport::order_events() {
 SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t rows) {
   all_.outcome = std::move(outcome);
   for (const std::string& contact : contacts_) {
-    const std::string message = all_.outcome.message, constraint = "write the constraint in";
-    put_known_names(contact, all_.outcome.message);
-    const std::size_t at = message == all_.outcome.message ? std::string::npos : all_.outcome.hint.find(constraint);
+    const bool named = put_known_names(contact, all_.outcome.message);
+    const std::string constraint = "write the constraint in";
+    const std::size_t at = named ? all_.outcome.hint.find(constraint) : std::string::npos;
     if (at != std::string::npos) all_.outcome.hint.replace(at, constraint.size(), "write the contact in");
     for (Warning& w : all_.warnings) put_known_names(contact, w.message);
   }

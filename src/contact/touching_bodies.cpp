@@ -305,7 +305,7 @@ bool TouchingBodies::deeper(const std::vector<double>& q) {
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const long double gap = dynamics.place(c).gap;
     if (modes[c].touch != Touch::open || gap > -modes[c].depth || !near.closed(c)) continue;
-    modes[c].depth = RoundOff::kDepth * near.place_size(c) - gap;
+    modes[c].depth = near.depth(c) - gap;
     any = true;
   }
   dynamics.go(at);

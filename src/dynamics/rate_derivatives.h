@@ -30,8 +30,8 @@ class RateDerivatives {
   void leave_out_kinks(const FormulaPoint& at, Of& d) const;
 
   const RateFormulas& formulas_;
-  std::vector<Partial>
-      partials_;  // rows: equations, rates, outputs; columns: unknowns of the equations, then the variables
+  // Rows: equations, rates, outputs; columns: unknowns of the equations, then the variables.
+  std::vector<Partial> partials_;
   Column columns_;
   CompiledFormulas values_;  // of the partial derivatives
   OneSided sides_;           // of the same rows and columns

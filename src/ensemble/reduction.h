@@ -22,8 +22,8 @@ namespace anholon {
 
 struct Reduction {
   enum class Kind : std::uint8_t { greatest, least, mean, last, count, first } kind = Kind::greatest;
-  std::size_t of =
-      0;  // the index: for a last value among the ends, for a count or a first time the event, otherwise the formula
+  // The index: for a last value among the ends, for a count or a first time the event, otherwise the formula.
+  std::size_t of = 0;
   std::string name;  // "max(height)", as it was written
   bool of_event() const { return kind == Kind::count || kind == Kind::first; }
 };
@@ -101,8 +101,8 @@ class Reducer {
   std::vector<double> ends_;
   std::vector<Fired> fired_;
   std::vector<double> polynomial_;
-  std::vector<double>
-      hidden_;  // points within the step where the formula may do something that its polynomial does not show
+  // Points within the step where the formula may do something that its polynomial does not show.
+  std::vector<double> hidden_;
   double length_ = 0;
   std::size_t kinks_ = 0;
   bool foretold_ = false;  // the last values are those of polynomials that were not compared with values

@@ -160,8 +160,8 @@ class Emitter : StageCode {
   llvm::Function *substitution_ = nullptr, *advance_ = nullptr;
   std::optional<PackedMemory> memory_;  // places in the scratch memory
   Value *scratch_ = nullptr, *sines_ = nullptr;
-  bool history_is_whole_ =
-      false;  // the scratch memory contains all sums of a convolution before the newest coefficients
+  // The scratch memory contains all sums of a convolution before the newest coefficients.
+  bool history_is_whole_ = false;
   std::vector<Value*> side_, solution_;
 };
 

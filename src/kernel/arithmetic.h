@@ -72,8 +72,8 @@ struct KernelTables {
   // `projected`, without guesses: the present state after projection.
   std::array<std::uint32_t, 3> motions{};
   std::uint32_t projected = 0;
-  std::uint32_t margin =
-      0;  // the part that a step is of the reach of its series (integrate/step_control.h), in powers of two
+  // The part that a step is of the reach of its series (integrate/step_control.h), in powers of two.
+  std::uint32_t margin = 0;
   std::uint32_t inverse_pivots = 0;  // `inverse` of the judged pivots
   Findings found;
   std::uint32_t size = 0;

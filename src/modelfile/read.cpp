@@ -7,10 +7,10 @@
 #include "expr/normal.h"
 #include "formula/indices.h"
 #include "formula/units.h"
+#include "modelfile/all_contacts.h"
 #include "modelfile/check/coefficients.h"
 #include "modelfile/check/dimensions.h"
 #include "modelfile/check/doubled_gravity.h"
-#include "modelfile/check/states_in_contacts.h"
 #include "modelfile/check/values.h"
 #include "modelfile/contacts.h"
 #include "modelfile/implied_units.h"
@@ -110,7 +110,7 @@ class Reader {  // its references are used only while it runs
     read_events(root, scope_, model_, diagnostics_);
     check_observer(observer_, model_, diagnostics_);
     read_outputs(root, scope_, model_, diagnostics_);
-    take_contacts(root, switched);
+    contacts_ = read_all_contacts(root, switched, scope_, model_, diagnostics_);
     if (const Item* n = table(root, "notation")) {
       std::vector<std::string> declared;
       for (const auto& [name, d] : scope_.declarations()) declared.push_back(name);
@@ -149,31 +149,6 @@ class Reader {  // its references are used only while it runs
   void observer(const Item& root) {
     if (const Item* o = table(root, "observer"))
       guard([&] { observer_ = read_observer(*o, scope_, model_, diagnostics_); }, o->span);
-  }
-
-  // Reads the contacts; `switched`: the constraints that hold in some modes only.
-  void take_contacts(const Item& root, const std::vector<Contact>& switched) {
-    contacts_ = read_contacts(root, scope_, model_, diagnostics_);
-    check_names_of_contacts(contacts_, model_, diagnostics_);
-    note_contacts();
-    contacts_.insert(contacts_.end(), switched.begin(), switched.end());
-    settle_states_in_contacts(model_, contacts_, diagnostics_);
-    settle_contact_forces(scope_, model_, contacts_, diagnostics_);
-    scope_.contact_forces.close();
-  }
-
-  // Notes the contacts: the reader returns the model in which all contacts are open.
-  void note_contacts() {
-    if (contacts_.empty()) return;
-    std::string names;
-    std::size_t count = 0;
-    for (const Contact& c : contacts_)
-      if (!c.under) names += (count++ == 0 ? "'" : ", '") + c.name + "'";
-    const bool one = count == 1;
-    model_.notes.push_back({(one ? "contact " : "contacts ") + names + (one ? " is no " : " are no ") +
-                                "part of these equations, which hold while " +
-                                (one ? "it is open" : "all of them are open"),
-                            ModelNote::About::open_contacts});
   }
 
   void scenarios(Item& root) {

@@ -43,8 +43,8 @@ DenseStep dense_step(const Stepper<N>& stepper, const Wider<N>& end) {
 }
 
 struct RigorousReport {
-  std::optional<std::size_t>
-      times;  // the number of times, up to the end of the motion, at which the bounds hold; nullopt: at all times
+  // The number of times, up to the end of the motion, at which the bounds hold; nullopt: at all times.
+  std::optional<std::size_t> times;
   std::size_t pieces = 0;                              // the number of pieces
   std::string newton, projected, constraints, joints;  // bounds, rounded upwards; "inf" if there is no bound
   long bits = 0;                                       // of the midpoints of balls

@@ -206,8 +206,8 @@ class RunRows {
   std::optional<W> last_;   // the time of the last row
   std::vector<W> numbers_;  // of one row
   RowWriter<N> writer_;
-  std::unique_ptr<KernelRows>
-      beside_;  // nullptr if the reference computes the rows; the last member, because it uses the others
+  // Null if the reference computes the rows; the last member, because it uses the others.
+  std::unique_ptr<KernelRows> beside_;
 };
 
 }  // namespace anholon

@@ -199,11 +199,13 @@ Outcome StateSolver<N>::leading(const System& s, const Structure& t) {
   }
   if (!taken) return no_leading(s, solutions, others);
   for (std::size_t j = 0; j < unknowns.size(); ++j) *state_.value(node(unknowns[j])) = (*taken)[j];
+  // A branch is that of a constraint.
+  const bool branches =
+      std::any_of(s.constraints.begin(), s.constraints.end(), [&](std::size_t r) { return may_branch(m_, s, r); });
   if (!others.empty() && !branch_was_named(s, t))
     state_.notes.push_back("the equations have several solutions at the start: " + solution_text(*taken, s, t) +
-                           " is taken, there is also " + others +
-                           (nonlinear_in_forces(m_, t.d).empty() ? "; name one by [initial] branch = {…} or guess = {…}"
-                                                                 : "; name one by [initial] guess = {…}"));
+                           " is taken, there is also " + others + "; name one by [initial] " +
+                           (branches ? "branch = {…} or guess = {…}" : "guess = {…}"));
   return {};
 }
 

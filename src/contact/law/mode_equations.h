@@ -25,16 +25,16 @@ enum class Touch : std::uint8_t { open, slips, sticks };
 struct ForceShare {
   bool shared = false;    // its rate follows from those that are held
   long double given = 0;  // a known part of the force
-  std::vector<long double>
-      of;  // if shared: the remaining force is this part of each unknown force of its kind; empty: zero
+  // If shared: the remaining force is this part of each unknown force of its kind; empty: zero.
+  std::vector<long double> of;
 };
 
 struct ContactMode {
   Touch touch = Touch::open;
   std::array<long double, 2> direction{};  // of the slip, of length 1
-  std::optional<long double>
-      fast;         // if a slip velocity v with two components is larger than this, its direction is v/|v|
-  ForceShare load;  // N of a contact that touches
+  // If a slip velocity v with two components is larger than this, its direction is v/|v|.
+  std::optional<long double> fast;
+  ForceShare load;                     // N of a contact that touches
   std::array<ForceShare, 2> shares{};  // T of a contact that sticks
   bool held = false;                   // sticks, whatever friction this needs
   // Its slip begins in `direction`, which stays constant for a moment. If the contact is held meanwhile, rows show that

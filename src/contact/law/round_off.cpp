@@ -27,22 +27,33 @@ bool RoundOff::missed(std::size_t c) const {
 }
 
 bool RoundOff::gap_is_round_off(std::size_t c) const {
-  return largest_term(c) > std::abs(dynamics_.place(c).gap_rate * at_.t.get_d());
+  return terms(c).largest > std::abs(dynamics_.place(c).gap_rate * at_.t.get_d());
 }
 
-long double RoundOff::largest_term(std::size_t c) const {
+RoundOff::Terms RoundOff::terms(std::size_t c) const {
   const std::vector<long double>& normal = dynamics_.accelerations().contacts[c].normal;
-  long double largest = 0, rest = dynamics_.place(c).gap;
+  Terms found;
+  const auto add = [&](long double term) {
+    found.largest = std::max(found.largest, std::abs(term));
+    found.sum += std::abs(term);
+  };
+  long double rest = dynamics_.place(c).gap;
   for (std::size_t a = 0; a < normal.size(); ++a) {
     const long double term = normal[a] * at_.q[a];
     rest -= term;
-    largest = std::max(largest, std::abs(term));
+    add(term);
   }
-  return std::max(largest, std::abs(rest));
+  add(rest);
+  return found;
+}
+
+long double RoundOff::depth(std::size_t c) const {
+  constexpr long double kDepth = 2e-14L;
+  return kDepth * std::max(place_size(c), terms(c).sum);
 }
 
 bool RoundOff::negligible_at_start(std::size_t c) const {
-  const long double largest = largest_term(c);
+  const long double largest = terms(c).largest;
   return negligible(c) && dynamics_.place(c).gap >= -std::max(kMissed * largest, uncertainty(c));
 }
 

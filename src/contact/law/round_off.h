@@ -18,9 +18,6 @@ class RoundOff {
 
   // A place is known to this part of the size of its terms.
   static constexpr long double kPlace = 1e-14L;
-  // A gap that begins at zero hits below minus this part of the size of its terms. It is more than the part below which
-  // the watch of events takes a value for round-off.
-  static constexpr long double kDepth = 2e-14L;
 
   // True if an event has closed the gap, or if the gap is at most round-off, because the state is rounded to doubles.
   bool closed(std::size_t contact) const;
@@ -37,6 +34,9 @@ class RoundOff {
   // The factor, at least 1, by which accelerations may differ by more than round-off from those at an event, because
   // the time of the event is rounded.
   long double late() const;
+  // The depth below which a gap that begins at zero hits: more than what the watch of events takes for the round-off of the
+  // terms of the gap.
+  long double depth(std::size_t contact) const;
   // The size of the terms of a gap.
   long double place_size(std::size_t contact) const;
   // The velocity of the gap; 0 within the round-off of the earlier velocities.
@@ -50,7 +50,11 @@ class RoundOff {
   // The uncertainty of a gap: the round-off of its terms, of the way of its coordinates in the last segment, and of its
   // way within a round-off of t.
   long double uncertainty(std::size_t contact) const;
-  long double largest_term(std::size_t contact) const;  // the largest term of the gap at the place
+  // The terms of the gap at the place: those of the coordinates along its gradient, and the rest.
+  struct Terms {
+    long double largest = 0, sum = 0;  // of the absolute values
+  };
+  Terms terms(std::size_t contact) const;
   long double pressed(std::size_t contact) const;
   long double pressed_by_others(std::size_t contact) const;
   bool hardly_moves(std::size_t contact, long double v, long double a) const;
