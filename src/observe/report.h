@@ -29,11 +29,11 @@ struct Warning {
   std::string message, hint;
 };
 
-// An output that is declared conserved is not conserved if it changes by more than this, relative to its size. The
-// limit is far above the errors of integration and round-off.
+// An output that is declared conserved is not conserved if it changes by more than this, relative to the greatest of its
+// terms. The limit is far above the errors of integration and round-off.
 inline constexpr double kConserved = 1e-6;
 inline Warning not_conserved(const std::string& name, double change) {
-  return {"the output '" + name + "' is not conserved: it changes by " + number_text(change, 3) + " of its size",
+  return {"the output '" + name + "' is not conserved: it changes by " + number_text(change, 3) + " of its terms",
           "look for a force, an impact, an event or an observer that changes it, or leave out conserved = true"};
 }
 

@@ -19,6 +19,19 @@ constexpr std::size_t kTogether = 256, kBlocks = 8, kFew = 512;
 // The steps without rows that are passed on together.
 constexpr std::size_t kSteps = 4096;
 
+// Returns the sizes whose round-off each number of the state has: its own size, and that of its change in the time t at
+// its present rate, because the time of a row is rounded. A velocity that passes zero has an error of the second kind.
+std::vector<long double> sizes_of_round_off(const RowPlace& place, const std::vector<int>& orders) {
+  std::vector<long double> sizes;
+  for (std::size_t j = 0; j < orders.size(); ++j)
+    for (int k = 0; k < orders[j]; ++k) {
+      const std::size_t i = sizes.size();
+      const long double rate = k + 1 < orders[j] ? place.state[i + 1] : place.leading[j];
+      sizes.push_back(std::abs(place.state[i]) + std::abs(place.t * rate));
+    }
+  return sizes;
+}
+
 }  // namespace
 
 // The program of the motion is copied, because the motion may rewrite its equations later.
@@ -157,12 +170,13 @@ std::vector<double> KernelRows::of_round_off(const RowPlace& place, const std::v
   // The signs are those of four independent changes, because one change alone may leave a column unchanged.
   constexpr std::array<std::size_t, 4> kSigns = {0, 1, 2, 3};
   std::vector<double> changes(numbers.size(), 0), other;
+  const std::vector<long double> sizes = sizes_of_round_off(place, program_.d);
   WaitingBlock block(kSigns.size());
   for (const std::size_t signs : kSigns) {
     RowPlace changed = place;
     changed.t *= 1 + (signs % 2 == 0 ? kRoundoff : -kRoundoff);
     for (std::size_t i = 0; i < changed.state.size(); ++i)
-      changed.state[i] *= 1 + (std::popcount(i & signs) % 2 == 0 ? kRoundoff : -kRoundoff);
+      changed.state[i] += (std::popcount(i & signs) % 2 == 0 ? kRoundoff : -kRoundoff) * sizes[i];
     block.add(changed);
   }
   waiting_->compute(block, [&](const WaitingRows::Computed& row) {

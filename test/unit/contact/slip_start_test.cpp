@@ -61,6 +61,32 @@ TEST(SlipStart, WithAnAcceleration) {
   EXPECT_GT(std::abs(belt(true, "0.26").last("x") - aslant.last("x")), 1e-3);  // the mutant
 }
 
+// A spring pulls a block to and fro in a straight slot: each half swing takes pi/sqrt(k) and loses 2 mu g/k. Where the
+// block turns back, the slip is as small as the round-off of the velocities, and its direction is still that of the
+// slot: rows agree with the state solved for again.
+TEST(SlipStart, TurnsBackInASlot) {
+  const auto block = [](const std::string& k) {
+    return contact_motion(R"toml(coordinates = ["x", "y", "z"]
+gravity.field = "-10*ez"
+potential.spring = ")toml" + k +
+                              R"toml(*(x^2 + y^2)/2"
+particle = [{name = "block", mass = 1, position = "x*ex + y*ey + z*ez"}]
+constraint = [{name = "slot", equation = "7*y = 3*x"}]
+contact = [{name = "f", gap = "z", slip = ["x'", "y'"], friction = 0.1}]
+initial = {x = 0.7}
+)toml",
+                          3);
+  };
+  const auto m = block("40");
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  EXPECT_TRUE(m.report.warnings.empty()) << m.report.warnings[0].message;
+  const auto turns = times(m, "f.reverses");
+  ASSERT_EQ(turns.size(), 6U);
+  for (std::size_t n = 0; n < turns.size(); ++n)
+    EXPECT_NEAR(turns[n], static_cast<double>(n + 1) * M_PI / std::sqrt(40.0), 1e-11);
+  EXPECT_GT(std::abs(times(block("41"), "f.reverses")[0] - turns[0]), 1e-3);  // the mutant
+}
+
 TEST(SlipStart, WithTooLittleFrictionFromTheStart) {
   const auto block = [](const std::string& friction) {
     return contact_motion(R"toml(coordinates = ["x", "y", "z"]
