@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, SupportsFloat, Union
 
+from ._names import by_spelled_names
+
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
@@ -15,6 +17,9 @@ if TYPE_CHECKING:
 Values = Union["npt.ArrayLike", Mapping[str, "npt.ArrayLike"], None]
 """Inputs or parameters: an array in their order, some values by name (names left out keep the values of the model), or None for the
 values of the model. A Series of pandas whose labels are texts has values by name."""
+
+States = Union["npt.ArrayLike", Mapping[str, "npt.ArrayLike"]]
+"""States: an array in their order, or the values of all of them by name. A Series of pandas whose labels are texts has values by name."""
 
 
 def time_of(t: object) -> float:
@@ -70,6 +75,21 @@ def numbers_of(name: str, values: object) -> Array:
         if found.dtype.kind not in "fiubO" or any(x is None or isinstance(x, str) for x in (found.flat if found.dtype.kind == "O" else ())):
             raise TypeError(f"{name} is an array of numbers in SI units, not {values!r:.60}")
     return np.ascontiguousarray(values, dtype=np.float64)
+
+
+def states_of(given: object, names: list[str]) -> Array:
+    """Returns one state, shape (states,), or many, shape (states, …), as an array of float64 in the order of `names`.
+
+    Raises KeyError if values by name are not those of all states, and TypeError if a value is no number.
+    """
+    labelled = labelled_values(given)
+    if labelled is None:
+        return numbers_of("x", given)
+    labelled = by_spelled_names(labelled, "x")
+    absent = [name for name in names if name not in labelled]
+    if absent:
+        raise KeyError(f"x has no value of {absent[0]!r}; by name it has all states: {', '.join(names)}")
+    return in_order(labelled, names, lambda: numbers_of("x", ()), "x")
 
 
 def takes_numbers(out: Array, x: Array) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _core
-from ._arguments import Values, array_of_values, in_order, labelled_values, number_of, numbers_of, takes_numbers, time_of
+from ._arguments import States, Values, array_of_values, in_order, labelled_values, number_of, numbers_of, states_of, takes_numbers, time_of
 from ._errors import ModelError
 from ._names import by_spelled_names, ByName
 from ._torch import torch_function
@@ -53,6 +53,9 @@ class Dynamics:
         constraints of order 2 or more need them, then the model's states. Independent velocities are called u1, u2, …, and a name
         that the model has gets a number: u1_2."""
         return self._core.states
+
+    def _state_names(self) -> list[str]:
+        return [state.name for state in self.states]
 
     @property
     def inputs(self) -> list[str]:
@@ -147,12 +150,12 @@ class Dynamics:
             given = in_order(labelled, names, usual, what)
         return None if given is None else array_of_values(given, len(names), what, shape)
 
-    def __call__(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None, *, out: Array | None = None) -> Array:
+    def __call__(self, t: float, x: States, u: Values = None, p: Values = None, *, out: Array | None = None) -> Array:
         """Returns the rates x' of one state, shape (states,), or of many states, shape (states, …), whose last axes count the states.
 
         Args:
             t: the time, s.
-            x: states.
+            x: states in their order, or all of them by name.
             u: inputs, shape (inputs,), or (inputs, …) for each state. If it is None, the formulas of the model give them at
                 (t, x); the same formulas give the inputs left out of a mapping, with the inputs that are given.
             p: parameters, shape (parameters,), or (parameters, …) for each state; those of the model if it is None.
@@ -163,7 +166,7 @@ class Dynamics:
         Raises:
             TypeError: t is not a number, or `out` is not an array of float64.
             ValueError: a shape does not fit, or `out` cannot be written to.
-            KeyError: there is no input or parameter of that name.
+            KeyError: there is no state, input or parameter of that name, or x lacks a state.
 
         Example:
             >>> import anholon as an
@@ -174,7 +177,7 @@ class Dynamics:
         import numpy as np
 
         time = time_of(t)
-        given = x if type(x) is np.ndarray and x.dtype == np.float64 and x.flags.c_contiguous else numbers_of("x", x)
+        given = x if type(x) is np.ndarray and x.dtype == np.float64 and x.flags.c_contiguous else states_of(x, self._state_names())
         if given.shape[:1] != (self._count,):
             raise ValueError(f"x has the shape {given.shape}; its first axis has to be the {self._count} states")
         # The core writes to a contiguous array that shares no memory with x.
@@ -219,17 +222,17 @@ class Dynamics:
         usual = by_formulas if labelled is not None and any(name not in named for name in self.inputs) else lambda: self.u0
         return self._values(u if labelled is None else named, self.inputs, usual, "u", x.shape[1:]), others
 
-    def _states(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array | None, Array | None, tuple[int, ...]]:
+    def _states(self, t: float, x: States, u: Values, p: Values) -> tuple[Array, Array | None, Array | None, tuple[int, ...]]:
         """Returns states with their inputs and parameters, and the shape of the axes that count the states."""
         import numpy as np
 
-        state = numbers_of("x", x)
+        state = states_of(x, self._state_names())
         if state.shape[:1] != (self._count,):
             raise ValueError(f"x has the shape {state.shape}; its first axis has to be the {self._count} states")
         some, others = self._given(t, state, u, p)
         return state, some, others, state.shape[1:]
 
-    def output(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None) -> Array:
+    def output(self, t: float, x: States, u: Values = None, p: Values = None) -> Array:
         """Returns the outputs y of one state, shape (outputs,), or of many states, shape (outputs, …), with the arguments of ``f(t, x)``.
 
         Example:
@@ -243,7 +246,7 @@ class Dynamics:
         made: Array = self._core.outputs_at(time, state, some, others)
         return made.reshape((len(made), *batch))
 
-    def input(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
+    def input(self, t: float, x: States, p: Values = None) -> Array:
         """Returns the inputs by the formulas of the model, its controller, at one state, shape (inputs,).
 
         Raises:
@@ -257,12 +260,12 @@ class Dynamics:
             raise ValueError(f"x has the shape {state.shape}; it has to be that of one state, {(self._count,)}")
         return np.array(self._core.inputs_at(time, state.tolist(), [] if parameters is None else parameters.tolist()))
 
-    def jac(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
+    def jac(self, t: float, x: States, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
         """Returns the exact derivatives of the rates (or outputs) at one state or many, not finite differences.
 
         Args:
             t: the time, s.
-            x: states, shape (states,) or (states, …).
+            x: states, shape (states,) or (states, …), or all of them by name.
             u: inputs, which are held constant in derivatives by x; those of the formulas of the model if it is None.
             p: parameters; those of the model if it is None.
             by: "x", "u" or "p", the variable of the derivatives, whose shape is (rows, states, …), (rows, inputs, …) or
@@ -289,14 +292,14 @@ class Dynamics:
         chosen = whole[: self._count] if of == "x'" else whole[self._count :]
         return chosen.reshape((*chosen.shape[:2], *batch))
 
-    def jvp(self, t: float, x: npt.ArrayLike, v: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
+    def jvp(self, t: float, x: States, v: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
         """Returns the derivatives times a direction, jac(…) v, shape (rows, …). v is one direction, or one for each state."""
         import numpy as np
 
         jacobian, direction = self._aligned(self.jac(t, x, u, p, by=by, of=of), v, 1)
         return np.asarray(jacobian @ direction if jacobian.ndim == 2 else np.einsum("ij...,j...->i...", jacobian, direction))
 
-    def vjp(self, t: float, x: npt.ArrayLike, w: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
+    def vjp(self, t: float, x: States, w: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
         """Returns a covector times the derivatives, w jac(…), shape (columns, …). w is one covector, or one for each state."""
         import numpy as np
 
@@ -312,7 +315,7 @@ class Dynamics:
             raise ValueError(f"the vector has the shape {array.shape}; it has to be {fits}")
         return jacobian, array if array.ndim > 1 else array.reshape(array.shape + (1,) * len(batch))
 
-    def _equations(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array, Array]:
+    def _equations(self, t: float, x: States, u: Values, p: Values) -> tuple[Array, Array, Array]:
         """Returns M, Phi and the right side of  M q'' = Phi^T lambda + right.  The rates of the model's states are eliminated by
         their equations, so that a thrust, or another force with such a rate, is part of the right side."""
         import numpy as np
@@ -320,7 +323,7 @@ class Dynamics:
         if self.minimal:
             raise ModelError("in independent velocities there is no mass matrix\nhint: dynamics(minimal=False)")
         names = [c.name for c in self.model.coordinates]
-        if [s.name for s in self.states] != [*names, *(n + "'" for n in names), *self.model.states] or not self.linear:
+        if self._state_names() != [*names, *(n + "'" for n in names), *self.model.states] or not self.linear:
             raise ModelError(
                 "the equations are not solved for accelerations alone, so no mass matrix times accelerations is in them\n"
                 "hint: model.equations() shows what they are; f.jac has the derivatives of the rates"
@@ -346,7 +349,7 @@ class Dynamics:
 
         return of_batch(forces), of_batch(matrix[n:end, :n]), of_batch(acting)
 
-    def mass_matrix(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
+    def mass_matrix(self, t: float, x: States, p: Values = None) -> Array:
         """Returns M of  M q'' + bias = Phi^T lambda,  shape (coordinates, coordinates), or (coordinates, coordinates, …) of many
         states. The formulas of the model give the inputs.
 
@@ -361,12 +364,12 @@ class Dynamics:
         """
         return self._equations(t, x, None, p)[0]
 
-    def bias(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None) -> Array:
+    def bias(self, t: float, x: States, u: Values = None, p: Values = None) -> Array:
         """Returns the bias of  M q'' + bias = Phi^T lambda:  all terms without accelerations and multipliers, among them the thrust
         of expelled matter and forces with the rate of a state, shape (coordinates, …)."""
         return -self._equations(t, x, u, p)[2]
 
-    def constraint_jacobian(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
+    def constraint_jacobian(self, t: float, x: States, p: Values = None) -> Array:
         """Returns Phi of  M q'' + bias = Phi^T lambda,  the derivatives of the constraints by the velocities (those of holonomic
         constraints by the coordinates), shape (constraints, coordinates, …)."""
         return self._equations(t, x, None, p)[1]
@@ -474,11 +477,11 @@ class Dynamics:
                 warnings.warn(what + "; give all of them, or take those of model.initial(…)", stacklevel=2)
         return x
 
-    def motion(self, x: npt.ArrayLike, t: float | None = None, p: Values = None) -> dict[str, float]:
+    def motion(self, x: States, t: float | None = None, p: Values = None) -> dict[str, float]:
         """Returns the coordinates, velocities (and higher derivatives of the state) and states of the model at one state x, by name.
 
         Args:
-            x: a state.
+            x: a state, or its values by name.
             t: the time, s; the initial time if it is None.
             p: the parameters with which x was made, on which independent velocities may depend; those of the model if it is
                 None.
@@ -496,7 +499,7 @@ class Dynamics:
         """
         import numpy as np
 
-        state = numbers_of("x", x)
+        state = states_of(x, self._state_names())
         if state.shape != (self._count,):
             raise ValueError(f"x has the shape {state.shape}; it has to be one state, ({self._count},)")
         others = self._values(p, self.parameters, lambda: self.p0, "p")
@@ -509,7 +512,7 @@ class Dynamics:
         if self.minimal:
             coordinates = [c.name for c in self.model.coordinates]
             return coordinates, [name + "'" for name in coordinates], states
-        mechanical = [state.name for state in self.states][: self._count - len(states)]
+        mechanical = self._state_names()[: self._count - len(states)]
         return [n for n in mechanical if not n.endswith("'")], [n for n in mechanical if n.endswith("'")], states
 
     def __repr__(self) -> str:

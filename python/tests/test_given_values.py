@@ -113,6 +113,24 @@ def test_labels_of_a_series_are_names() -> None:
     np.testing.assert_array_equal(f(0, x, u, polars.Series(p)), expected)
 
 
+def test_states_by_name_need_no_order() -> None:
+    f = an.load("disc").dynamics()
+    x = f.start + np.linspace(0.1, 0.2, len(f.start))
+    names = [state.name for state in f.states]
+    turned = pandas.Series(x, index=names)[::-1]
+    np.testing.assert_array_equal(f(0, turned), f(0, x))
+    np.testing.assert_array_equal(f(0, turned.to_dict()), f(0, x))
+    np.testing.assert_array_equal(f.jac(0, turned), f.jac(0, x))
+    assert f.motion(turned) == f.motion(x)
+    many = pandas.DataFrame(np.outer(x, [1, 1.5]), index=names)[::-1]
+    np.testing.assert_array_equal(f(0, many), f(0, np.outer(x, [1, 1.5])))
+    np.testing.assert_array_equal(f(0, pandas.Series(x)), f(0, x))
+    with pytest.raises(KeyError, match=f"x has no value of {names[-1]!r}; by name it has all states: {names[0]}, "):
+        f(0, turned[1:])
+    with pytest.raises(KeyError, match="there is no 'absent' in x"):
+        f(0, {**turned.to_dict(), "absent": 1.0})
+
+
 def test_states_of_other_parameters() -> None:
     model = an.load("sleigh-with-moving-mass")
     f, heavy = model.dynamics(), model.with_(m=3).dynamics()

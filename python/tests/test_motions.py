@@ -313,4 +313,6 @@ def begin(f):
 {ENDS[what]}
 """
     done = subprocess.run([sys.executable, "-W", "ignore", "-c", script], capture_output=True, text=True, check=False, timeout=60)
-    assert (done.returncode, done.stderr) == (0, "")
+    # A machine with other work to do tells that it waits.
+    said = done.stderr.replace("anholon: a computation in another thread ends first; Ctrl-C ends the process now\n", "")
+    assert (done.returncode, said) == (0, "")
