@@ -81,8 +81,9 @@ struct Stability {
   std::vector<std::string> notes;   // crossings that were not found, and jumps from one motion to another
 };
 
-// The linear models over values of a parameter, for each of which the initial data are solved anew. Two opposite
-// crossings between neighbouring values are not detected. A value at which there is no motion has an outcome of its own.
+// The linear models over values of a parameter, for each of which the initial data are solved anew. A bare number is in
+// the unit that the model declares for the parameter, else in SI units. Two opposite crossings between neighbouring
+// values are not detected. A value at which there is no motion has an outcome of its own.
 // Errors: an unknown parameter (a diagnostic).
 ANHOLON_API Result<Stability> stability(const Model& model, const std::string& parameter,
                                         const std::vector<Number>& values, const LinearOptions& options = {});

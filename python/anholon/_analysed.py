@@ -193,8 +193,9 @@ class Analysed(Described):
 
         Args:
             parameter: the name of the parameter.
-            low: the first value, in SI units, or all values.
-            high: the last value, in SI units.
+            low: the first value, or all values. A bare number is in the unit that the model declares for the parameter, else in
+                SI units.
+            high: the last value.
             n: the number of values, which are equally far apart.
             about: ``"state"`` or ``"equilibrium"``, as in :meth:`linearize`, which has the other arguments, too.
 

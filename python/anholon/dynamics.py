@@ -371,7 +371,8 @@ class Dynamics:
 
     def constraint_jacobian(self, t: float, x: States, p: Values = None) -> Array:
         """Returns Phi of  M q'' + bias = Phi^T lambda,  the derivatives of the constraints by the velocities (those of holonomic
-        constraints by the coordinates), shape (constraints, coordinates, …)."""
+        constraints by the coordinates), shape (constraints, coordinates, …). If an input keeps a constraint (``by``), the formula holds
+        with the forces by a unit of the input in place of the column of Phi^T."""
         return self._equations(t, x, None, p)[1]
 
     @property

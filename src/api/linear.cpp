@@ -117,7 +117,7 @@ Result<Stability> stability(const Model& model, const std::string& parameter, co
       const inner::Constant value = constant(v, parameter);
       if (const auto wrong = of.misfit(value))
         throw inner::Failure({}, parameter + ": " + wrong->message, wrong->hint("a number "));
-      range.values.push_back(value.value);
+      range.values.push_back(of.in_si(value));
     }
     if (values.empty()) return mistake("no value of '" + parameter + "' is given");
     request.range = std::move(range);

@@ -59,6 +59,26 @@ AskedWord initial_word(std::string name, const std::string& value) {
   return {kOrders[std::min(primes, std::size(kOrders) - 1)], name + "=" + value};
 }
 
+// Returns the parameter of the name; nullptr if the model has none.
+const inner::Parameter* parameter_of(const inner::Model& model, const std::string& name) {
+  const auto& all = model.parameters;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const inner::Parameter& p) { return p.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+// Returns the option that gives a parameter a number in SI units. `model`: nullptr if the text cannot be read.
+AskedWord set_word(const inner::Model* model, const std::string& name, const std::string& number) {
+  const inner::Parameter* parameter = model ? parameter_of(*model, name) : nullptr;
+  return {"set", name + "=" + (parameter ? inner::text_in_si(*parameter, number) : number)};
+}
+
+// Reads the model of the sweep.
+Result<Model> model_of(const SweepStore& store) {
+  ReadOptions reading;
+  reading.mode = words_of(store.asked("mode"));
+  return opened(model_asked(store.request()), reading);
+}
+
 // Splits a list at its commas; a name that holds a comma is quoted.
 std::vector<std::string> listed(const std::string& text) {
   return text.empty() ? std::vector<std::string>() : inner::csv_cells(text);
@@ -247,6 +267,7 @@ std::vector<AskedWord> words_of_case(const SweepStore& store, std::size_t number
     const auto& names = std::get<inner::Words>(keeps(column(rows, "case_name"), "case")->values);
     list.push_back({"case", names.different[names.rows[row]]});
   }
+  const Result<Model> model = model_of(store);
   for (const std::string& name : varied(store)) {
     const inner::ParquetColumn* at_start = column(rows, name + std::string(kInitial));
     const inner::ParquetColumn* c = keeps(at_start ? at_start : column(rows, name), name);
@@ -254,7 +275,8 @@ std::vector<AskedWord> words_of_case(const SweepStore& store, std::size_t number
     if (!numbers || !std::isfinite((*numbers)[row]))
       throw Failure({}, "the folder holds no number of '" + name + "' in case " + std::to_string(number));
     const std::string value = inner::number_text((*numbers)[row]);
-    list.push_back(at_start ? initial_word(name, value) : AskedWord{"set", name + "=" + value});
+    list.push_back(at_start ? initial_word(name, value)
+                            : set_word(model ? &*model->data().model : nullptr, name, value));
   }
   return list;
 }
@@ -265,12 +287,11 @@ std::vector<AskedWord> words_of_numbers(const inner::Model& model,
   std::vector<AskedWord> list;
   for (const auto& number : numbers) {
     const std::string &name = number.first, &value = number.second;
-    const bool parameter = std::any_of(model.parameters.begin(), model.parameters.end(),
-                                       [&](const inner::Parameter& p) { return p.name == name; });
+    const bool parameter = parameter_of(model, name);
     if (of_scenarios && name == "case" && list.empty())
       list.push_back({name, value});
     else
-      list.push_back(parameter ? AskedWord{"set", name + "=" + value} : initial_word(name, value));
+      list.push_back(parameter ? set_word(&model, name, value) : initial_word(name, value));
   }
   return list;
 }
@@ -324,9 +345,7 @@ Result<System> system_of_words(const SweepStore& store, const std::vector<AskedW
 
 std::map<std::string, std::string> units_of_columns(const SweepStore& store) {
   std::map<std::string, std::string> units;
-  ReadOptions reading;
-  reading.mode = words_of(store.asked("mode"));
-  const Result<Model> model = opened(model_asked(store.request()), reading);
+  const Result<Model> model = model_of(store);
   if (!model) return units;
   const std::map<std::string, std::string> known = inner::quantity_units(*model->data().model, model->data().contacts);
   for (const std::string& column : store.request().columns) {
@@ -339,9 +358,7 @@ std::map<std::string, std::string> units_of_columns(const SweepStore& store) {
 std::map<std::string, std::vector<double>> points_of_axes(const SweepStore& store) {
   constexpr std::size_t kMostPoints = 65536;
   std::map<std::string, std::vector<double>> points;
-  ReadOptions reading;
-  reading.mode = words_of(store.asked("mode"));
-  const Result<Model> model = opened(model_asked(store.request()), reading);
+  const Result<Model> model = model_of(store);
   if (!model) return points;
   const inner::Model& of = *model->data().model;
   const auto take = [&](const auto& add) {

@@ -17,6 +17,9 @@ void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
     case ContactForces::Formula::Of::monitor:
       model.monitors[f.index].value = value;
       break;
+    case ContactForces::Formula::Of::output:
+      model.outputs[f.index].values[f.component] = value;
+      break;
     case ContactForces::Formula::Of::event:
       // An event never fires if its formula is a number; zero is replaced by 1, which does not pass zero either.
       model.events[f.index].when = is_zero(value) ? g.one() : value;

@@ -154,7 +154,7 @@ void Variation::add(const std::string& name, const std::vector<Constant>& values
   if (together_) common_ = listed.axis;
   for (const Constant& value : values) {
     if (const auto wrong = of.misfit(value)) mistake_in(name, 0, name.size(), wrong->message, wrong->hint(""));
-    list.push_back(value.value);
+    list.push_back(of.in_si(value));
   }
   listed.range = ValueRange(std::move(list));
 }
@@ -180,6 +180,7 @@ void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) 
     Values& cell = values_.emplace_back();
     cell.cell = k;
     cell.axis = axis;
+    cell.bare = quantities.back().in_si({1, std::nullopt});
   }
   table_ = std::move(table);
   for (std::size_t row = 0; row < table_->rows(); ++row) {
@@ -251,7 +252,8 @@ std::vector<Rational> Variation::operator()(std::size_t number) const {
       out[i] = Rational(draw(v, number));
     } else if (v.cell) {
       if (cells.empty()) cells = table_->cells(points[v.axis]);
-      out[i] = number_of(cells[*v.cell], {0, cells[*v.cell]});
+      const Constant c = constant_of(cells[*v.cell], {0, cells[*v.cell]});
+      out[i] = c.dimension ? c.value : Rational(c.value * v.bare);
     } else {
       out[i] = (*v.range)[points[v.axis]];
     }

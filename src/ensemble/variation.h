@@ -55,6 +55,7 @@ class Variation {
     std::optional<ValueRange> range;  // of a grid or a list
     std::optional<std::size_t> cell;  // the cell in a line of the table
     std::size_t axis = 0;             // of a range or a cell
+    Rational bare = 1;                // a bare number 1 of a cell in SI units
     enum class Law : std::uint8_t { normal, uniform } law = Law::normal;
     double a = 0, b = 0;  // parameters of the distribution
     std::uint32_t stream = 0;

@@ -17,8 +17,8 @@ static void for_each_expression(Coordinate& c, const ExprVisitor& f) {
 }
 
 static void for_each_expression(Parameter& p, const ExprVisitor& f) {
-  auto& [name, value, doc, span, mode, is_vector] = p;
-  for_each_expression_of(f, name, value, doc, span, mode, is_vector);
+  auto& [name, value, doc, span, mode, is_vector, unit] = p;
+  for_each_expression_of(f, name, value, doc, span, mode, is_vector, unit);
 }
 
 static void for_each_expression(Observer& o, const ExprVisitor& f) {

@@ -35,6 +35,8 @@ struct Parameter {
   // The value is a vector, which formulas contain in place of the name; `value` is then zero, and no formula contains
   // this parameter.
   bool vector = false;
+  // The unit that the file declares for the number, in which bare numbers given from outside count; empty: SI units.
+  std::string unit = {};
 };
 
 // The observer's frame: moving components of its angular velocity and of the inertial acceleration

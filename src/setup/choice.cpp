@@ -123,7 +123,11 @@ static std::string unit_at(const std::vector<std::string>& units, std::size_t in
 }
 
 GivenQuantity GivenQuantity::of_parameter(const Model& model, std::size_t index) {
-  return {model, model.parameters[index].name, unit_at(model.parameter_units, index), 0};
+  const Parameter& p = model.parameters[index];
+  GivenQuantity of(model, p.name, unit_at(model.parameter_units, index), 0);
+  of.declared_ = p.unit;
+  if (!p.unit.empty()) of.bare_ = read_constant("1 " + p.unit).value;
+  return of;
 }
 GivenQuantity GivenQuantity::of_coordinate(const Model& model, std::size_t index, unsigned order) {
   return {model, model.coordinates[index].name, unit_at(model.coordinate_units, index), order};
@@ -159,12 +163,21 @@ std::optional<GivenQuantity::Misfit> GivenQuantity::misfit(const Constant& value
                   ""};
   (*wanted)[2] -= order_;
   if (*wanted == *value.dimension) return std::nullopt;
-  return other_quantity(*wanted, *value.dimension);
+  Misfit found = other_quantity(*wanted, *value.dimension);
+  if (!declared_.empty()) found.bare = declared_;
+  return found;
 }
 
 std::string GivenQuantity::Misfit::hint(const std::string& before) const {
   if (unit.empty()) return "a bare number, in the units that the model is meant in";
-  return unit == "1" ? "a bare number, or an angle: 30 deg" : before + "in " + unit + ", or a bare number in SI units";
+  return unit == "1" ? "a bare number, or an angle: 30 deg" : before + "in " + unit + ", or a bare number in " + bare;
+}
+
+std::string text_in_si(const Parameter& parameter, const std::string& number) {
+  if (parameter.unit.empty()) return number;
+  const auto unit = read_unit(parameter.unit);
+  const std::string in_si = !unit || unit->dimension == Dimension{} ? "rad" : print(unit->dimension);
+  return number.find('/') == std::string::npos ? number + " " + in_si : number + "*(1 " + in_si + ")";
 }
 
 static Rational value_in(const Dimension& wanted, const Constant& value, const std::string& called) {

@@ -39,22 +39,30 @@ class GivenQuantity {
   static GivenQuantity of_coordinate(const Model& model, std::size_t index, unsigned order);
 
   struct Misfit {
-    std::string message;  // "a length (m) is expected here, this is a mass (kg)"
-    std::string unit;     // the expected SI unit; "1" for a pure number; empty if there is none
+    std::string message;            // "a length (m) is expected here, this is a mass (kg)"
+    std::string unit;               // the expected SI unit; "1" for a pure number; empty if there is none
+    std::string bare = "SI units";  // what bare numbers count in
     // Returns "a number in m, or a bare number in SI units"; `before` is "a number " or empty.
     std::string hint(const std::string& before) const;
   };
   // Returns nullopt if the value has no unit or a unit of this quantity.
   std::optional<Misfit> misfit(const Constant& value);
+  // Returns the value in SI units. A bare number counts in the unit that the file declares for the parameter.
+  Rational in_si(const Constant& value) const { return value.dimension ? value.value : Rational(value.value * bare_); }
 
  private:
   GivenQuantity(const Model& model, std::string name, std::string unit, unsigned order);
 
   const Model* model_;
-  std::string name_, unit_;  // unit_: the unit in the file, empty if it is unknown
+  std::string name_, unit_;  // unit_: the SI unit, empty if it is unknown
+  std::string declared_;     // the unit of bare numbers, empty if it is the SI unit
+  Rational bare_ = 1;        // a bare number 1 in SI units
   unsigned order_;
   bool looked_ = false;
 };
+// Returns the text by which --set gives the parameter a number in SI units: "0.25 m", "1/3*(1 m)", or "0.25" if bare numbers
+// count in SI units.
+std::string text_in_si(const Parameter& parameter, const std::string& number);
 // Return the value of a time in s, and of a pure number. Both throw if the value has another unit; `called` begins the
 // message: "--to: ".
 Rational time_value(const Constant& value, const std::string& called);

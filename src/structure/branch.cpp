@@ -57,15 +57,30 @@ StageEquation law(const System& s, std::size_t i, unsigned k) {
   return {e, "constraint '" + name + "'", s.model->constraints[s.constraints[i - s.coordinates]].span};
 }
 
+bool leads_beyond_rate(const System& s, const Structure& t, std::size_t j) { return j >= s.mechanical() && t.d[j] > 1; }
+
 std::vector<StageEquation> leading_equations(const System& s, const Structure& t) {
+  Graph& g = *s.model->graph;
+  const auto rate_is_known = [&](NodeId id) {
+    const Node n = g.node(id);
+    return n.kind == Kind::state && n.order == 1 && leads_beyond_rate(s, t, s.mechanical() + n.index)
+               ? put_masses(*s.model, s.model->states[n.index].rate)
+               : Expr{};
+  };
   std::vector<StageEquation> list;
-  for (std::size_t i = 0; i < s.size(); ++i) list.push_back(law(s, i, static_cast<unsigned>(t.c[i])));
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    if (leads_beyond_rate(s, t, i)) continue;
+    StageEquation e = law(s, i, static_cast<unsigned>(t.c[i]));
+    e.residual = substitute({&e.residual, 1}, rate_is_known)[0];
+    list.push_back(std::move(e));
+  }
   return list;
 }
 
 Column leading_unknowns(const System& s, const Structure& t) {
   Column list;
-  for (std::size_t j = 0; j < s.size(); ++j) list.push_back(s.symbol(j, static_cast<unsigned>(t.d[j])));
+  for (std::size_t j = 0; j < s.size(); ++j)
+    if (!leads_beyond_rate(s, t, j)) list.push_back(s.symbol(j, static_cast<unsigned>(t.d[j])));
   return list;
 }
 
@@ -106,8 +121,12 @@ class Search {
          InitialState<N> state, const MayBeTaken<N>& wanted)
       : m_(m), s_(s), parameters_(parameters), wanted_(wanted), n_(s.coordinates), equations_(leading_equations(s, t)),
         unknowns_(leading_unknowns(s, t)), all_(m, equations_, unknowns_, 0, parameters), metric_(orders(s, t)),
-        constraints_(m, part(equations_, n_, s.size()), part(unknowns_, 0, n_), metric_, parameters),
-        motion_(m, part(equations_, 0, n_), part(unknowns_, n_, s.size()), 0, parameters), state_(std::move(state)) {}
+        constraints_(m, part(equations_, n_, equations_.size()), part(unknowns_, 0, n_), metric_, parameters),
+        motion_(m, part(equations_, 0, n_), part(unknowns_, n_, unknowns_.size()), 0, parameters),
+        state_(std::move(state)) {
+    if (constraints_may_branch(m, s)) return;
+    for (const Expr& x : nonlinear_in_forces(m, t.d)) nonlinear_.push_back(m.graph().node(x.id).index);
+  }
 
   LeadingSolutions<N> run() {
     without_nonlinear_constraints();
@@ -190,7 +209,7 @@ class Search {
     if (metric_ != 1U << 2 || guessed() || !constraints_may_branch(m_, s_)) return;
     std::vector<StageEquation> rows = part(equations_, 0, n_);
     Column unknowns = part(unknowns_, 0, n_);
-    for (std::size_t i = n_; i < s_.size(); ++i)
+    for (std::size_t i = n_; i < equations_.size(); ++i)
       if (i >= s_.mechanical() || !may_branch(m_, s_, s_.constraints[i - n_]))
         rows.push_back(equations_[i]), unknowns.push_back(unknowns_[i]);
     Stage<N> free(m_, rows, unknowns, metric_, parameters_);
@@ -310,8 +329,12 @@ class Search {
   void sort() {
     for (std::size_t a = 0; a < n_; ++a) constraints_.x(state_, a) = guess_[a];
     if (!constraints_.evaluate(state_)) return;
+    // Where forces alone are nonlinear, the others of the leading derivatives follow from those in them, which may have no
+    // inertia.
     const auto distance = [&](const std::vector<N>& x) {
       N sum(0);
+      for (const std::size_t a : nonlinear_) sum += (x[a] - guess_[a]) * (x[a] - guess_[a]);
+      if (!nonlinear_.empty()) return to_double(sum);
       for (std::size_t a = 0; a < n_; ++a)
         for (std::size_t b = 0; b < n_; ++b) sum += (x[a] - guess_[a]) * constraints_.metric(a, b) * (x[b] - guess_[b]);
       return to_double(sum);
@@ -345,6 +368,7 @@ class Search {
   Stage<N> constraints_, motion_;
   InitialState<N> state_;
   std::vector<N> guess_;
+  std::vector<std::size_t> nonlinear_;  // the coordinates in which forces are nonlinear, without nonlinear constraints
   double least_singular_value_ = kSingular;
   LeadingSolutions<N> out_;
 };

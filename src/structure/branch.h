@@ -18,16 +18,20 @@ bool may_branch(const Mechanics& m, const System& s, const Structure& t);
 
 template <Number N>
 struct LeadingSolutions {
-  // x_j^(d_j) in the order of the system's variables. Solutions are sorted by their distance from the guess in the mass
-  // norm; of two equally near ones the one with the larger multipliers comes first.
+  // x_j^(d_j) in the order of the system's variables. Solutions are sorted by their distance from the guess: in the mass
+  // norm, or, where forces alone are nonlinear, in the derivatives in which they are. Of two equally near solutions the
+  // one with the larger multipliers comes first.
   std::vector<std::vector<N>> found;
   bool singular = false;  // a start led to a point at which the equations do not determine the motion
 };
 
 // Returns equation i of the system, differentiated k times.
 StageEquation law(const System& s, std::size_t i, unsigned k);
-// These return the equations of motion and constraints, each differentiated as often as the structure requires, and the
-// unknowns for which they are solved.
+// True for a state of the model of which the structure asks for a derivative beyond its rate. The start holds none: it
+// follows from the formula of the rate, which is substituted.
+bool leads_beyond_rate(const System& s, const Structure& t, std::size_t variable);
+// These return the equations of motion, constraints and rates of states, each differentiated as often as the structure
+// requires, and the unknowns for which they are solved.
 std::vector<StageEquation> leading_equations(const System& s, const Structure& t);
 Column leading_unknowns(const System& s, const Structure& t);
 

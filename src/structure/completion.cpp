@@ -24,8 +24,7 @@ Outcome StateSolver<N>::complete(const System& s, const Structure& t) {
   if (!late.empty())
     if (Outcome o = together(s, t, late, beyond); !o.ok()) return o;
   make_room(s, t, 0);
-  for (std::size_t j = 0; j < s.size(); ++j)
-    *state_.origin(node(s.symbol(j, static_cast<unsigned>(t.d[j])))) = Origin::derived;
+  for (const Expr x : leading_unknowns(s, t)) *state_.origin(node(x)) = Origin::derived;
   say_choices(s, t);
   return {};
 }
@@ -170,7 +169,7 @@ template <Number N>
 bool StateSolver<N>::branch_was_named(const System& s, const Structure& t) const {
   const auto leading_guess = [&](const GivenValue& v) {
     const auto j = s.variable(v.symbol.id);
-    return j && is_higher(node(v.symbol)) && static_cast<int>(node(v.symbol).order) == t.d[*j];
+    return j && static_cast<int>(node(v.symbol).order) == t.d[*j];
   };
   return !model_.initial.branches.empty() ||
          std::any_of(model_.initial.guess.begin(), model_.initial.guess.end(), leading_guess);
@@ -232,7 +231,8 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
   const auto more = [&](std::size_t i) { return i < s.mechanical() ? beyond : 0; };
   StageEquations equations;
   for (std::size_t i = 0; i < s.size(); ++i)
-    for (int k = 0; k <= t.c[i] + more(i); ++k) equations.push_back(law(s, i, static_cast<unsigned>(k)));
+    for (int k = 0; k <= (leads_beyond_rate(s, t, i) ? 0 : t.c[i]) + more(i); ++k)
+      equations.push_back(law(s, i, static_cast<unsigned>(k)));
   for (const StageEquation& e : conditions())
     if (order_beyond(e.residual, s, t) < 0) equations.push_back(e);
   equations.insert(equations.end(), late.begin(), late.end());
@@ -250,7 +250,8 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
     Column unknowns;
     unsigned metric = 0;
     for (std::size_t j = 0; j < s.size(); ++j)
-      for (int k = j < s.coordinates ? std::min(lowest, t.d[j]) : 0; k <= t.d[j] + more(j); ++k) {
+      for (int k = j < s.coordinates ? std::min(lowest, t.d[j]) : 0;
+           k <= (leads_beyond_rate(s, t, j) ? 1 : t.d[j]) + more(j); ++k) {
         unknowns.push_back(s.symbol(j, static_cast<unsigned>(k)));
         if (j < s.coordinates && k < t.d[j]) metric |= 1U << k;
       }

@@ -12,7 +12,9 @@ std::vector<LanguageSection> language_of_names() {
        Form::named,
        values,
        {{"value", vector, "a number, a formula of other parameters, or a vector"},
-        {"unit", text, "its unit, as behind a number; a bare number after `--set` is one of this unit, too"},
+        {"unit", text,
+         "its unit, as behind a number; a bare number from outside (`--set`, `--vary`, a table of cases, Python) is "
+         "one of this unit, too"},
         {"doc", text, "what it is, for reports"}},
        R"md(```toml
 [parameters]

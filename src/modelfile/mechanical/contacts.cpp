@@ -474,8 +474,12 @@ void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact
     settle(model.monitors[k].value, model.monitors[k].open, ContactForces::Formula::Of::monitor, k);
   for (std::size_t k = 0; k < model.events.size(); ++k)
     settle(model.events[k].when, model.events[k].open_when, ContactForces::Formula::Of::event, k);
-  for (OutputQuantity& o : model.outputs)
-    for (Expr& e : o.values) e = at_start(e);
+  for (std::size_t k = 0; k < model.outputs.size(); ++k)
+    for (std::size_t i = 0; i < model.outputs[k].values.size(); ++i) {
+      Expr& value = model.outputs[k].values[i];
+      if (holds_force(value)) found->formulas.push_back({ContactForces::Formula::Of::output, k, value, i});
+      value = at_start(value);
+    }
   const auto refuse = [&](Expr& e, Span span, const char* what) {
     if (!holds_force(e)) return;
     diagnostics.error(span, std::string(what) + " holds the force of a contact",

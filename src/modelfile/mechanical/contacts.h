@@ -23,9 +23,11 @@ struct ContactForces {
     std::optional<std::size_t> friction;  // this component of the friction, or of the moment of resistance; nullopt: N
   };
   struct Formula {
-    enum class Of : std::uint8_t { monitor, event, rate } of = Of::monitor;  // rate: of a state, linear in the forces
-    std::size_t index = 0;  // index among its kind; the element of the model holds the value with all contacts open
-    Expr value;             // multiplier kContactForces + k is force k
+    // rate: of a state, linear in the forces.
+    enum class Of : std::uint8_t { monitor, output, event, rate } of = Of::monitor;
+    std::size_t index = 0;      // index among its kind; the element of the model holds the value with all contacts open
+    Expr value;                 // multiplier kContactForces + k is force k
+    std::size_t component = 0;  // of an output that is a vector
   };
   std::vector<Force> forces;
   std::vector<Formula> formulas;

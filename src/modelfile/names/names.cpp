@@ -205,6 +205,7 @@ Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
     if (Expr* e = std::get_if<Expr>(&v)) {
       check(*e);
       model_.parameters[d.index].value = *e;
+      model_.parameters[d.index].unit = d.unit;
       return g.parameter(static_cast<std::uint32_t>(d.index));
     }
     if (Vector* a = std::get_if<Vector>(&v)) {

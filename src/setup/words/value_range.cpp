@@ -108,15 +108,17 @@ class RangeReader {
 
 }  // namespace
 
-Rational number_of(const std::string& word, const WordPart& part) {
-  return constant_in(word, without_blanks(word, part)).value;
+Constant constant_of(const std::string& word, const WordPart& part) {
+  return constant_in(word, without_blanks(word, part));
 }
+
+Rational number_of(const std::string& word, const WordPart& part) { return constant_of(word, part).value; }
 
 Rational number_of(const std::string& word, const WordPart& part, GivenQuantity& of) {
   const WordPart p = without_blanks(word, part);
   const Constant c = constant_in(word, p);
   if (const auto wrong = of.misfit(c)) mistake_in(word, p.at, p.text.size(), wrong->message, wrong->hint("a number "));
-  return c.value;
+  return of.in_si(c);
 }
 
 Rational ValueRange::operator[](std::size_t k) const {

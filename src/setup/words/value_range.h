@@ -20,8 +20,9 @@ struct WordPart {
 std::vector<WordPart> parts_of(const std::string& word, std::size_t from, std::size_t to, char separator);
 
 // Reads a number, a formula of numbers and pi, or a number with a unit. Throws MistakeInWord.
+Constant constant_of(const std::string& word, const WordPart& part);
 Rational number_of(const std::string& word, const WordPart& part);
-// Reads the same; a unit must be that of the quantity.
+// Reads the same in SI units; a unit must be that of the quantity.
 Rational number_of(const std::string& word, const WordPart& part, GivenQuantity& of);
 
 // Equidistant points, which are computed on demand, or a list.
