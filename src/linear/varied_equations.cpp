@@ -18,16 +18,19 @@ VariedEquations::VariedEquations(Workspace& of, Signals wanted) : scenario(of), 
       rows.push_back({i, k});
       es.push_back(total_derivative(scenario.system.equations[i], static_cast<unsigned>(k)));
     }
-  // An input on which a hidden constraint depends would enter with its rate.
+  // An input on which an equation depends that is differentiated would enter with its rate.
   for (std::size_t u = signals.u.size(); u-- > 0;) {
-    bool hidden = false;
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      hidden =
-          hidden || (rows[r].second < scenario.structure.c[rows[r].first] && !is_zero(partial(es[r], signals.u[u])));
-    if (!hidden) continue;
-    notes.push_back(
-        "the input '" + signals.inputs[u] +
-        "' stands in a constraint that holds at every time: its rate would be an input, too; it is left out");
+    std::optional<std::size_t> in;
+    for (std::size_t r = 0; r < rows.size() && !in; ++r)
+      if (rows[r].second < scenario.structure.c[rows[r].first] && !is_zero(partial(es[r], signals.u[u])))
+        in = rows[r].first;
+    if (!in) continue;
+    notes.push_back("the input '" + signals.inputs[u] + "' stands in " +
+                    (*in < scenario.system.coordinates
+                         ? "the equation of motion of '" + scenario.system.equation_names[*in] +
+                               "', which is differentiated, as a constraint asks for derivatives of accelerations"
+                         : std::string("a constraint that holds at every time")) +
+                    ": its rate would be an input, too; it is left out");
     signals.u.erase(signals.u.begin() + static_cast<std::ptrdiff_t>(u));
     signals.inputs.erase(signals.inputs.begin() + static_cast<std::ptrdiff_t>(u));
   }
