@@ -458,7 +458,7 @@ gravity.field = "-(9.81 m/s^2)*ez"
 initial = {th = "10 deg"}
 """)
     assert model.with_(l=25).parameters["l"] == 0.25
-    folder = model.sweep({"l": [25, "1/3 m", "0.5 m"]}, to=0.1, out=tmp_path / "lengths")
+    folder = model.sweep({"l": [25, "1/3*(1 m)", "0.5 m"]}, to=0.1, out=tmp_path / "lengths")
     assert folder["l"].tolist() == [0.25, 1 / 3, 0.5]
     assert model.sweep({"l": an.grid(25, 50, 2)}, to=0.1).varied["l"].tolist() == [0.25, 0.5]
     for opened in (folder, an.open_sweep(folder.path)):

@@ -28,6 +28,44 @@ class Constants final : public Names {
   Graph graph_;
 };
 
+Dimension dimension_of(const Syntax& s);
+
+Dimension dimension_of_product(const Syntax& s) {
+  Dimension d = dimension_of(s.args[0]);
+  for (std::size_t k = 1; k < s.args.size(); ++k) {
+    const Dimension factor = dimension_of(s.args[k]);
+    const bool divides = s.operators[k - 1].op == Syntax::Op::divide;
+    for (std::size_t i = 0; i < d.size(); ++i) d[i] += divides ? Rational(-factor[i]) : factor[i];
+  }
+  return d;
+}
+
+Dimension dimension_of_sum(const Syntax& s) {
+  const Dimension first = dimension_of(s.args[0]);
+  for (std::size_t k = 1; k < s.args.size(); ++k)
+    if (const Dimension next = dimension_of(s.args[k]); next != first)
+      throw Failure(s.operators[k - 1].span, "the two sides are " + describe(first) + " and " + describe(next));
+  return first;
+}
+
+// Returns the dimension of an expression of numbers with and without units. Functions have none.
+Dimension dimension_of(const Syntax& s) {
+  using Op = Syntax::Op;
+  if (s.op == Op::quantity) {
+    const auto unit = read_unit(s.text);
+    return unit ? unit->dimension : Dimension{};
+  }
+  if (s.op == Op::negate) return dimension_of(s.args[0]);
+  if (s.op == Op::multiply) return dimension_of_product(s);
+  if (s.op == Op::add) return dimension_of_sum(s);
+  if (s.op != Op::power) return {};
+  Constants names;
+  const Expr exponent = evaluate_number(s.args[1], names);
+  Dimension d = dimension_of(s.args[0]);
+  for (Rational& k : d) k *= is_number(exponent) ? number_value(exponent) : Rational(0);
+  return d;
+}
+
 }  // namespace
 
 Constant read_constant(const std::string& text) {
@@ -38,9 +76,7 @@ Constant read_constant(const std::string& text) {
   const Syntax s = parse_formula(FormulaText(text, start));
   const Expr e = evaluate_number(s, names);
   Constant c;
-  const Syntax& number = s.op == Syntax::Op::negate ? s.args[0] : s;
-  if (number.op == Syntax::Op::quantity)
-    if (const auto unit = read_unit(number.text)) c.dimension = unit->dimension;
+  if (has_unit(s)) c.dimension = dimension_of(s);
   if (is_number(e)) {
     c.value = number_value(e);
     return c;

@@ -10,7 +10,7 @@ namespace anholon {
 
 struct Constant {
   Rational value;                      // in SI units; to 60 digits if it contains pi or a root
-  std::optional<Dimension> dimension;  // the dimension of a number with a unit
+  std::optional<Dimension> dimension;  // the dimension of a number with a unit; nullopt for a bare number
 };
 
 // Reads a constant. Throws Failure with the position in the text, as a column of line 1.
