@@ -340,7 +340,7 @@ class Model(Analysed):
             raise ModelError("nothing is varied\nhint: sweep({'m': [1, 2, 5], \"x'\": anholon.grid(0, 1, 11)}, to=10)")
         laws = {name: str(of) for name, of in vary.items() if is_law(of)}
         values = [(str(name), [] if name in laws else varied_list(name, of)) for name, of in vary.items()]
-        seed, threads, refine = whole("seed", seed, 0), whole("threads", threads, 0), whole("refine", refine, 0)
+        seed, threads, refine = whole("seed", seed, 0, 2**64 - 1), whole("threads", threads, 0), whole("refine", refine, 0)
         cases = None if cases is None else whole("cases", cases, 1)
         chunk = None if chunk is None else whole("chunk", chunk, 1)
         if not isinstance(share, (tuple, list)) or len(share) != 2:
