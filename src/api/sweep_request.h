@@ -19,8 +19,7 @@ struct PreparedPiece {
   PreparedPiece& operator=(const PreparedPiece&) = delete;
 
   System system;
-  std::string word;      // the name of the scenario; empty if scenarios do not vary
-  inner::Outcome start;  // not ok if neither the model nor one of its first cases has a consistent start
+  std::string word;  // the name of the scenario; empty if scenarios do not vary
   const inner::Scenario* scenario = nullptr;
   std::optional<inner::Variation> variation;
   inner::MotionSettings settings;
@@ -31,6 +30,7 @@ struct PreparedPiece {
   const std::vector<inner::Contact>& moving() const;
   std::optional<inner::OpenModel> open_;  // the graph of this model holds the formulas of the reductions
   inner::Scenario own_;                   // the scenario with these formulas or another start
+  inner::Outcome own_start_;
 };
 
 struct PreparedSweep {
