@@ -324,8 +324,7 @@ class Model(Analysed):
             ModelError: an argument makes no sense; the folder holds another sweep or other files.
             OSError: a part could not be written.
             TypeError: ``columns`` or ``reduce`` is a single name, no list; an argument has to be a whole number and is not.
-            ValueError: a value is not finite; a whole number is too small.
-            MotionError: the initial values of the model are inconsistent.
+            ValueError: a value is not finite; a whole number is too small or too large.
             Interrupted: the user pressed Ctrl-C; ``.result`` is the sweep with the cases computed until then.
         """
         vary, table = {} if vary is None else vary, ("", "")

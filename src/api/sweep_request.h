@@ -43,7 +43,7 @@ struct PreparedSweep {
   const inner::Variation* variation() const { return pieces.size() == 1 ? &*pieces.front().variation : nullptr; }
 };
 
-// The errors are mistakes in the request and, as an outcome, an inconsistent start.
+// The errors are mistakes in the request; a start that no case has is the outcome of each case.
 Result<std::shared_ptr<const PreparedSweep>> prepared_sweep(const System& system, const SweepOptions& asked);
 // A Vary named "case" names scenarios.
 Result<std::shared_ptr<const PreparedSweep>> prepared_sweep(const Model& model, const PrepareOptions& prepare,
