@@ -69,17 +69,19 @@ def texts_of(values: Mapping[str, Number] | None) -> dict[str, str]:
     return {name: text_of(value) for name, value in by_spelled_names(values, "the values").items()}
 
 
-def whole(name: str, number: object, least: int) -> int:
-    """Returns a whole number that is at least `least`.
+def whole(name: str, number: object, least: int, most: int = 2**63 - 1) -> int:
+    """Returns a whole number that is at least `least` and at most `most`.
 
     Raises:
         TypeError: `number` is no whole number.
-        ValueError: `number` is below `least`.
+        ValueError: `number` is below `least` or above `most`.
     """
     if isinstance(number, bool) or not isinstance(number, numbers.Integral):
         raise TypeError(f"{name} is a whole number, not {number!r:.60}")
     if number < least:
         raise ValueError(f"{name} is {least} or more, not {int(number)}")
+    if number > most:
+        raise ValueError(f"{name} is {most} or less, not {int(number)}")
     return int(number)
 
 

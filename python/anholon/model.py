@@ -324,8 +324,7 @@ class Model(Analysed):
             ModelError: an argument makes no sense; the folder holds another sweep or other files.
             OSError: a part could not be written.
             TypeError: ``columns`` or ``reduce`` is a single name, no list; an argument has to be a whole number and is not.
-            ValueError: a value is not finite; a whole number is too small.
-            MotionError: the initial values of the model are inconsistent.
+            ValueError: a value is not finite; a whole number is too small or too large.
             Interrupted: the user pressed Ctrl-C; ``.result`` is the sweep with the cases computed until then.
         """
         vary, table = {} if vary is None else vary, ("", "")
@@ -340,7 +339,7 @@ class Model(Analysed):
             raise ModelError("nothing is varied\nhint: sweep({'m': [1, 2, 5], \"x'\": anholon.grid(0, 1, 11)}, to=10)")
         laws = {name: str(of) for name, of in vary.items() if is_law(of)}
         values = [(str(name), [] if name in laws else varied_list(name, of)) for name, of in vary.items()]
-        seed, threads, refine = whole("seed", seed, 0), whole("threads", threads, 0), whole("refine", refine, 0)
+        seed, threads, refine = whole("seed", seed, 0, 2**64 - 1), whole("threads", threads, 0), whole("refine", refine, 0)
         cases = None if cases is None else whole("cases", cases, 1)
         chunk = None if chunk is None else whole("chunk", chunk, 1)
         if not isinstance(share, (tuple, list)) or len(share) != 2:

@@ -17,7 +17,10 @@ struct Model::Data {
   std::vector<std::string> cases, mode;
   std::shared_ptr<const inner::Model> model;
   std::vector<Diagnostic> remarks;
-  std::vector<inner::Contact> contacts;  // expressions of the graph of the model; empty if a mode is chosen
+  // The contacts that move, none if a mode is chosen; and all of the file. Their expressions belong to the graph of the
+  // model.
+  std::vector<inner::Contact> contacts, contacts_of_file;
+  std::vector<inner::Identity> identities;  // of the parameters
 
   // Throws Failure if `what` needs a mode of the contacts and none is chosen.
   void without_contacts(const std::string& what) const;

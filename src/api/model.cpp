@@ -18,7 +18,9 @@ Result<Model> opened(std::shared_ptr<Model::Data> data) {
   const auto model = data->open_again(diagnostics);
   if (diagnostics.has_errors() || !model) return error_of(diagnostics, data->source);
   data->model = model->model;
-  if (data->mode.empty()) data->contacts = inner::contacts(*model->names);
+  data->contacts_of_file = inner::contacts(*model->names);
+  data->identities = inner::identities(*model->names);
+  if (data->mode.empty()) data->contacts = data->contacts_of_file;
   for (const inner::Diagnostic& d : diagnostics.list()) data->remarks.push_back(to_public(d, data->model->source_text));
   return Model(std::move(data));
 }

@@ -111,12 +111,18 @@ PreparedPiece::PreparedPiece(System of, const inner::Outcome& of_system, std::st
     : system(std::move(of)), word(std::move(scenario_name)) {
   options.state = system.data().choice;
   variation.emplace(variation_of(asked, *system.data().model->model, !word.empty()));
-  must_not_be_given(variation->varied(), options.state);
+  std::vector<std::string> chosen;
+  for (const std::string& mode : system.data().model->mode)
+    chosen.push_back(inner::normal_name(mode.substr(0, mode.find('='))));
+  must_not_be_given(variation->varied(), options.state, chosen);
   options.varied = variation->varied();
   options.state.open_parameters = inner::varied_parameters(options);
   scenario = scenario_for(asked.reduce, of_system);
   options.cases = variation->cases();
   options.numbers = [this](std::size_t number) { return inner::EnsembleCase{(*variation)(number), {}}; };
+  const Model::Data& model = *system.data().model;
+  switch_with(open_ ? contacts(*open_->names) : model.contacts_of_file, open_ ? *open_->model : *model.model, options);
+  if (!own_start_.ok()) scenario_of_cases(options, own_);
   const auto set = [&](const char* name, const std::vector<std::string>& words) {
     const inner::MotionOption& option = inner::motion_option(name);
     inner::set(settings, option, words, name,
@@ -130,8 +136,8 @@ PreparedPiece::PreparedPiece(System of, const inner::Outcome& of_system, std::st
   settings.error_estimate = "never";
   inner::ask(settings, *scenario, {"", "", [](const std::string&) {}}, options);
   options.threads = asked.threads;
+  options.identities = model.identities;
   move_with(moving(), options);
-  if (!start.ok()) start = inner::scenario_of_cases(options, own_);
 }
 
 // Returns the contacts of the model in whose graph the formulas are; empty if a mode is chosen.
@@ -155,7 +161,7 @@ const inner::Scenario* PreparedPiece::scenario_for(const std::vector<std::string
   } catch (const inner::MistakeInWord& m) {
     refuse(m, "reduce");
   }
-  start = make_system(open_->model, of.scenario.system.form->name, options.state, own_);
+  own_start_ = make_system(open_->model, of.scenario.system.form->name, options.state, own_);
   return &own_;
 }
 
@@ -167,7 +173,6 @@ Result<std::shared_ptr<const PreparedSweep>> prepared_sweep(const System& system
     auto sweep = std::make_shared<PreparedSweep>();
     sweep->model = of.model, sweep->asked = asked;
     const PreparedPiece& piece = sweep->pieces.emplace_back(system, inner::Outcome{}, std::string(), asked);
-    if (!piece.start.ok()) return error_of(piece.start);
     sweep->cases = piece.options.cases;
     return Prepared(std::move(sweep));
   });
@@ -188,7 +193,6 @@ Result<std::shared_ptr<const PreparedSweep>> prepared_sweep(const Model& model, 
       inner::Outcome start;
       System system(system_of(*read, prepare, start));
       const PreparedPiece& piece = sweep->pieces.emplace_back(std::move(system), start, scenario, sweep->asked);
-      if (!piece.start.ok()) return error_of(piece.start);
       sweep->cases += piece.options.cases;
     }
     return Prepared(std::move(sweep));

@@ -19,8 +19,7 @@ struct PreparedPiece {
   PreparedPiece& operator=(const PreparedPiece&) = delete;
 
   System system;
-  std::string word;      // the name of the scenario; empty if scenarios do not vary
-  inner::Outcome start;  // not ok if neither the model nor one of its first cases has a consistent start
+  std::string word;  // the name of the scenario; empty if scenarios do not vary
   const inner::Scenario* scenario = nullptr;
   std::optional<inner::Variation> variation;
   inner::MotionSettings settings;
@@ -31,6 +30,7 @@ struct PreparedPiece {
   const std::vector<inner::Contact>& moving() const;
   std::optional<inner::OpenModel> open_;  // the graph of this model holds the formulas of the reductions
   inner::Scenario own_;                   // the scenario with these formulas or another start
+  inner::Outcome own_start_;
 };
 
 struct PreparedSweep {
@@ -43,7 +43,7 @@ struct PreparedSweep {
   const inner::Variation* variation() const { return pieces.size() == 1 ? &*pieces.front().variation : nullptr; }
 };
 
-// The errors are mistakes in the request and, as an outcome, an inconsistent start.
+// The errors are mistakes in the request; a start that no case has is the outcome of each case.
 Result<std::shared_ptr<const PreparedSweep>> prepared_sweep(const System& system, const SweepOptions& asked);
 // A Vary named "case" names scenarios.
 Result<std::shared_ptr<const PreparedSweep>> prepared_sweep(const Model& model, const PrepareOptions& prepare,

@@ -1,6 +1,7 @@
 #include "cli/command_line.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/diagnostic.h"
 #include "base/utf8.h"
@@ -40,8 +41,13 @@ static constexpr const char* kAboutModes = "a mode says which contacts are open,
 
 // Throws if a word is no option of the command, and says which commands have it.
 void CommandLine::check_options(int argc, char** argv) const {
-  const CLI::App* command = &app_;
-  while (!command->get_subcommands().empty()) command = command->get_subcommands()[0];
+  const CLI::App *command = &app_, *outer = &app_;
+  std::string name;  // of the command: "sweep status"
+  while (!command->get_subcommands().empty()) {
+    outer = command;
+    command = command->get_subcommands()[0];
+    name += (name.empty() ? "" : " ") + command->get_name();
+  }
   const CommandWords own = words_of(*command, "");
   std::vector<std::string> known;
   for (const CommandWords::Flag& flag : own.flags) known.insert(known.end(), flag.names.begin(), flag.names.end());
@@ -50,11 +56,15 @@ void CommandLine::check_options(int argc, char** argv) const {
     if (word == "--") return;
     if (!word.starts_with("--") || std::find(known.begin(), known.end(), word) != known.end()) continue;
     std::string others;
-    for (const CLI::App* other : app_.get_subcommands([](const CLI::App*) { return true; }))
-      if (other->get_option_no_throw(word)) others += (others.empty() ? "" : ", ") + other->get_name();
+    const auto add_those_of = [&](const CLI::App& of, const std::string& before) {
+      for (const CLI::App* other : of.get_subcommands([](const CLI::App*) { return true; }))
+        if (other->get_option_no_throw(word)) others += (others.empty() ? "" : ", ") + before + other->get_name();
+    };
+    add_those_of(app_, "");
+    if (outer != &app_) add_those_of(*outer, outer->get_name() + " ");
     const std::string near = others.empty() ? did_you_mean(word, known) : "";
-    const std::string help = "anholon " + std::string(argv[1]) + " --help";
-    throw UsageError{"error: '" + std::string(argv[1]) + "' has no option " + word +
+    const std::string help = "anholon " + name + " --help";
+    throw UsageError{"error: '" + name + "' has no option " + word +
                      (near.empty() ? "" : "; did you mean " + near + "?") +
                      "\nhint: " + (others.empty() ? help : word + " is an option of " + others) +
                      (word == "--mode" ? std::string("; ") + kAboutModes : "") + "\n"};
@@ -218,6 +228,22 @@ void accuracy(CLI::App* c, SystemCommand& o) { motion_options(c, o, MotionOption
 void motion(CLI::App* c, SystemCommand& o) {
   motion_options(c, o, MotionOption::Part::times);
   accuracy(c, o);
+}
+
+// Removes zeros before a seed and returns what is wrong with it. The library reads negative and too large numbers as if
+// they were others, and a number after a zero as one of base 8.
+static std::string settle_seed(std::string& text) {
+  const std::string largest = std::to_string(std::numeric_limits<std::uint64_t>::max());
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  std::string number = digits ? text.substr(std::min(text.find_first_not_of('0'), text.size() - 1)) : "";
+  if (!digits || number.size() > largest.size() || (number.size() == largest.size() && number > largest))
+    return "a seed is a whole number from 0 to " + largest + ", not '" + text + "'";
+  text = std::move(number);
+  return {};
+}
+
+void seed_option(CLI::App* c, unsigned long long& seed, const char* help) {
+  c->add_option("--seed", seed, help)->type_name("N")->transform(CLI::Validator(settle_seed, ""));
 }
 
 void order_m(CLI::App* c, int& m) {

@@ -72,6 +72,7 @@ void motion_options(CLI::App* c, SystemCommand& o, MotionOption::Part part);
 void accuracy(CLI::App* c, SystemCommand& o);
 void motion(CLI::App* c, SystemCommand& o);
 // Adds --m, the order of the forms that have one.
+void seed_option(CLI::App* c, unsigned long long& seed, const char* help);
 void order_m(CLI::App* c, int& m);
 // The words of the help that name the default output.
 std::string plain_output();

@@ -18,15 +18,14 @@ std::vector<bool> constraints_that_hold(const Model& model, const std::vector<Co
   return holds;
 }
 
-void put_modes(Model& model, const std::vector<Contact>& contacts, const std::vector<Rational>& modes) {
+void put_constraints_that_hold(Model& model, const std::vector<Contact>& contacts) {
   Graph& g = *model.graph;
-  for (std::size_t i = 0; i < model.parameters.size(); ++i)
-    if (model.parameters[i].mode) model.parameters[i].value = g.number(modes[i]);
-  std::size_t always = model.constraints.size();
-  for (const Contact& c : contacts)
-    if (c.held && c.held->at_start) always = std::min(always, *c.held->at_start);
-  model.constraints.resize(always);
-  model.names.multipliers.resize(always);
+  const auto switched = [&](const std::string& constraint) {
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [&](const Contact& c) { return c.held && c.name == constraint; });
+  };
+  std::erase_if(model.constraints, [&](const Constraint& c) { return switched(c.name); });
+  model.names.multipliers.resize(model.constraints.size());
   const std::vector<bool> holds = constraints_that_hold(model, contacts);
   std::vector<Expr> forces;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
@@ -40,6 +39,12 @@ void put_modes(Model& model, const std::vector<Contact>& contacts, const std::ve
   if (!contacts.empty() && contacts[0].forces)
     put_forces(*contacts[0].forces, forces, std::vector<std::vector<Expr>>(contacts.size()), model);
   std::erase_if(model.notes, [](const ModelNote& n) { return n.of_modes(); });
+}
+
+void put_modes(Model& model, const std::vector<Contact>& contacts, const std::vector<Rational>& modes) {
+  for (std::size_t i = 0; i < model.parameters.size(); ++i)
+    if (model.parameters[i].mode) model.parameters[i].value = model.graph->number(modes[i]);
+  put_constraints_that_hold(model, contacts);
 }
 
 }  // namespace anholon

@@ -30,7 +30,7 @@ class SwitchedMotion {
   }
 
   SimulationReport go() {
-    Outcome outcome = starts_as_read();
+    Outcome outcome;
     constexpr std::size_t kMostSegments = 100'000, kMostAtOnce = 16;
     std::size_t at_once = 0;
     for (std::size_t k = 0; outcome.ok() && at_.t < end_; ++k) {
@@ -63,17 +63,6 @@ class SwitchedMotion {
                           "constraints that are switched",
                       "write the value by positions and velocities");
     }
-  }
-
-  // Fails if a parameter that is varied after the file was read has changed which constraints hold at the start.
-  Outcome starts_as_read() const {
-    const std::vector<bool> holds = constraints_that_hold(*s_.model, contacts_);
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (holds[c] != contacts_[c].held->at_start.has_value())
-        return {OutcomeKind::inconsistent,
-                "a parameter that is varied switches the constraint '" + contacts_[c].name + "' at the start",
-                "vary it by --set, which reads the model again"};
-    return {};
   }
 
   std::vector<Rational> modes() const {

@@ -21,6 +21,13 @@ struct EnsembleCase {
   std::optional<Rational> to;    // the end, if the case has one of its own
 };
 
+// The constraints that parameters switch: [[constraint]] with active = "…".
+struct Switches {
+  Column active;                         // a constraint holds while its formula of parameters is positive
+  std::function<void(Model&)> put;       // puts the constraints that hold with the parameters of a model into it
+  std::vector<std::string> multipliers;  // the names of the multipliers in formulas of reductions
+};
+
 struct EnsembleOptions {
   StateChoice state;  // common to all cases
   std::vector<Varied> varied;
@@ -46,6 +53,11 @@ struct EnsembleOptions {
   // its rows have these columns after those of the model.
   std::function<SimulationReport(Workspace&, const SimulationOptions&, RowSink&)> own_motion;
   std::vector<std::string> own_columns;
+  std::vector<Identity> identities;  // a case in which one does not hold is refused
+  // If set, the equations of every case are made anew, from this model and the numbers of the case.
+  std::shared_ptr<const Model> each_anew;
+  // If set, a case in which other constraints hold than in the scenario of all cases is derived anew.
+  std::optional<Switches> switches;
 };
 
 struct CaseResult {

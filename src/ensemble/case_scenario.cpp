@@ -2,7 +2,17 @@
 
 #include <algorithm>
 
+#include "model/exponents.h"
+
 namespace anholon {
+
+// Returns the place of a constraint among the multipliers of a model.
+static std::optional<std::size_t> place_of(const std::string& constraint, const Model& model) {
+  const std::vector<std::string>& names = model.names.multipliers;
+  const auto at = std::find(names.begin(), names.end(), constraint);
+  if (at == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - names.begin());
+}
 
 std::vector<std::size_t> varied_parameters(const EnsembleOptions& o) {
   std::vector<std::size_t> list;
@@ -30,14 +40,40 @@ SimulationOptions options_of_case(const EnsembleOptions& o, const EnsembleCase& 
   return options;
 }
 
+Column formulas_in(Workspace& own, const Column& formulas, const EnsembleOptions& o) {
+  Graph& g = own.graph();
+  Column list;
+  for (const Expr e : formulas) list.push_back(g.own(e));
+  if (!o.switches || o.switches->multipliers == own.model->names.multipliers) return list;
+  return substitute(list, [&](NodeId id) {
+    const Node& n = g.node(id);
+    if (n.kind != Kind::multiplier || n.index >= o.switches->multipliers.size()) return Expr{};
+    const std::optional<std::size_t> place = place_of(o.switches->multipliers[n.index], *own.model);
+    return place ? g.multiplier(static_cast<std::uint32_t>(*place), n.order) : g.zero();
+  });
+}
+
+// Puts the constraints that hold in a case into its model. Fails if initial values are given to multipliers, which
+// belong to the constraints of all cases.
+static Outcome put_constraints(Model& model, const Switches& switches, const std::vector<StateOverride>& overrides) {
+  switches.put(model);
+  const bool given =
+      std::any_of(overrides.begin(), overrides.end(), [](const StateOverride& o) { return o.multiplier; });
+  if (!given || model.names.multipliers == switches.multipliers) return {};
+  return {OutcomeKind::inconsistent, "initial values are given to multipliers, and this case has other constraints",
+          "leave out these values, or those of parameters that switch a constraint with 'active'"};
+}
+
 static Outcome with_numbers(const Scenario& of_all, const EnsembleOptions& o, const EnsembleCase& numbers,
                             const std::optional<std::vector<std::size_t>>& open_parameters, Scenario& scenario) {
-  const std::shared_ptr<Model> model = given_model(of_all);
+  const std::shared_ptr<Model> model = o.each_anew ? clone(*o.each_anew) : given_model(of_all);
   for (std::size_t i = 0; i < o.varied.size(); ++i)
     if (o.varied[i].kind == Varied::Kind::parameter)
       model->parameters[o.varied[i].index].value = model->graph->number(numbers.values[i]);
   StateChoice state = o.state;
   state.overrides = overrides_of(o, &numbers);
+  if (o.switches)
+    if (Outcome put = put_constraints(*model, *o.switches, state.overrides); !put.ok()) return put;
   state.open_parameters = open_parameters;
   return make_scenario(model, *of_all.system.form, state, scenario);
 }
@@ -47,19 +83,21 @@ Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& o, const
   return with_numbers(of_all, o, numbers, std::vector<std::size_t>{}, scenario);
 }
 
-Outcome scenario_of_cases(const EnsembleOptions& o, Scenario& scenario) {
+void scenario_of_cases(EnsembleOptions& o, Scenario& scenario) {
   constexpr std::size_t kMost = 64;
-  Outcome first;
-  for (std::size_t k = 0; k < std::min(kMost, o.cases); ++k) {
-    const EnsembleCase numbers = o.numbers(k);
-    Scenario s;
-    const Outcome outcome = with_numbers(scenario, o, numbers, o.state.open_parameters, s);
-    if (k == 0) first = outcome;
-    if (!outcome.ok()) continue;
-    scenario = std::move(s);
-    return {};
+  const bool exponents_vary = !exponents_of(*given_model(scenario), varied_parameters(o)).empty();
+  for (const bool whole_exponents : {false, true}) {
+    if (whole_exponents) o.each_anew = given_model(scenario);
+    if (whole_exponents && !exponents_vary) return;
+    for (std::size_t k = 0; k < std::min(kMost, o.cases); ++k) {
+      Scenario s;
+      const std::optional<std::vector<std::size_t>> open =
+          whole_exponents ? std::vector<std::size_t>{} : o.state.open_parameters;
+      if (!with_numbers(scenario, o, o.numbers(k), open, s).ok()) continue;
+      scenario = std::move(s);
+      return;
+    }
   }
-  return first;
 }
 
 }  // namespace anholon

@@ -87,10 +87,15 @@ void must_be_no_column(const std::string& word, std::size_t at, const std::strin
   }
 }
 
-// The reactions and the forces of contacts differ from mode to mode, also in the equations that contain them.
-[[noreturn]] void refuse_force(const std::string& word, std::size_t at, const std::string& text) {
+// The reactions, and the forces of contacts and of constraints that are switched, differ from mode to mode, also in the
+// equations that contain them.
+[[noreturn]] void refuse_force(const std::string& word, std::size_t at, const std::string& text,
+                               const std::vector<Contact>& moving) {
+  const bool switched = std::any_of(moving.begin(), moving.end(), [](const Contact& c) { return c.held.has_value(); });
   mistake_in(
-      word, at, text.size(), "'" + text + "' holds reactions or forces of contacts, which change with the modes",
+      word, at, text.size(),
+      "'" + text + "' holds " + (switched ? "forces of constraints" : "reactions or forces of contacts") +
+          ", which change with the modes",
       "a formula of coordinates, velocities, accelerations and t; rows at times have the forces: --at, --columns");
 }
 
@@ -120,7 +125,7 @@ Expr formula_of(const std::string& word, std::size_t at, const std::string& text
     value = evaluate(parse_formula(FormulaText(text, place)), names);
   } catch (const Failure& f) {
     const auto of_force = [&](const Contact& c) { return text.find("lambda." + c.name) != std::string::npos; };
-    if (std::any_of(moving.begin(), moving.end(), of_force)) refuse_force(word, at, text);
+    if (std::any_of(moving.begin(), moving.end(), of_force)) refuse_force(word, at, text, moving);
     must_be_no_column(word, at, text, contacts(*model.names));
     throw MistakeInWord{f.diagnostic, word};
   }
@@ -135,8 +140,8 @@ void must_hold_no_forces(const std::string& word, std::size_t at, const std::str
                          const Model& model, const std::vector<Contact>& moving) {
   if (moving.empty()) return;
   for (std::size_t i = 0; i < model.monitors.size(); ++i)
-    if (model.monitors[i].name == text && holds_contact_force(moving, i)) refuse_force(word, at, text);
-  if (holds_multiplier(formula)) refuse_force(word, at, text);
+    if (model.monitors[i].name == text && holds_contact_force(moving, i)) refuse_force(word, at, text, moving);
+  if (holds_multiplier(formula)) refuse_force(word, at, text, moving);
 }
 
 // Returns the name without the spaces around it, if there is such an event. Throws MistakeInWord.

@@ -2,6 +2,7 @@
 
 #include "contact/hybrid.h"
 #include "contact/mode_model.h"
+#include "contact/switched_model.h"
 
 namespace anholon {
 
@@ -13,6 +14,18 @@ void move_with(const std::vector<Contact>& contacts, EnsembleOptions& o) {
   o.own_columns = contact_columns(contacts);
   // The estimate compares with a second run, which a motion with contacts does not have.
   o.estimate = ErrorEstimate::never;
+}
+
+void switch_with(const std::vector<Contact>& contacts, const Model& model, EnsembleOptions& o) {
+  Switches switches;
+  for (const Contact& c : contacts) {
+    if (!c.held) return;  // motions refuse models with contacts and switched constraints
+    switches.active.push_back(c.held->active);
+  }
+  if (contacts.empty()) return;
+  switches.put = [&contacts](Model& of_case) { put_constraints_that_hold(of_case, contacts); };
+  switches.multipliers = model.names.multipliers;
+  o.switches = std::move(switches);
 }
 
 }  // namespace anholon

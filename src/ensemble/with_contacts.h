@@ -9,4 +9,8 @@ namespace anholon {
 // for options that contacts do not support. The contacts have to outlive the options.
 void move_with(const std::vector<Contact>& contacts, EnsembleOptions& options);
 
+// Lets varied parameters switch constraints with `active`: each case has those that hold with its numbers. `model` is
+// the one to which formulas of reductions belong. The contacts have to outlive the options.
+void switch_with(const std::vector<Contact>& contacts, const Model& model, EnsembleOptions& options);
+
 }  // namespace anholon

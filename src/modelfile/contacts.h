@@ -1,4 +1,4 @@
-// The contacts of a model file that has been opened.
+// The contacts of a model file that has been opened, and what has to hold for its parameters.
 #pragma once
 #include "modelfile/mechanical/contacts.h"
 
@@ -9,5 +9,8 @@ const std::vector<Contact>& contacts(const Names& names);
 
 // Returns the model of the names, in which the caller may set a mode of the contacts; no thread may read it meanwhile.
 Model& model_of(Names& names);
+
+// Returns the identities that have to hold for all numbers of the parameters.
+const std::vector<Identity>& identities(const Names& names);
 
 }  // namespace anholon

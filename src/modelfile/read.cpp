@@ -428,6 +428,7 @@ class DerivedNames final : public Names {
   std::optional<Rotation> frame(const BodyName& body, Span use) override { return scope_.frame(body, use); }
   std::string body_name(const BodyName& body) const override { return scope_.body_name(body); }
   const std::vector<Contact>& contacts() const { return reader_->contacts(); }
+  const std::vector<Identity>& identities() const { return scope_.identities; }
   Model& model() { return reader_->model(); }
   bool declares(const std::string& name) const override {
     return scope_.declarations().count(name) > 0 || scope_.find_body(name) != nullptr;
@@ -481,6 +482,9 @@ std::map<std::string, std::string> implied_units(const Model& model) {
 }
 
 Model& model_of(Names& names) { return dynamic_cast<DerivedNames&>(names).model(); }
+const std::vector<Identity>& identities(const Names& names) {
+  return dynamic_cast<const DerivedNames&>(names).identities();
+}
 const std::vector<Contact>& contacts(const Names& names) { return dynamic_cast<const DerivedNames&>(names).contacts(); }
 
 }  // namespace anholon

@@ -205,7 +205,9 @@ Method method(const MotionSettings& settings, const Scenario& s, const Simulatio
   const auto refused = refusal(method, demands(o, asker));
   const bool tolerance = refused && refused->of == MethodRefusal::Of::tolerance;
   if (refused && !tolerance) refuse(refused->why, "leave out " + option_of(refused->of, o, asker));
-  if (const std::string why = only_taylor(*s.model, program(s.system, s.structure)); !why.empty()) refuse(why, "");
+  const bool structured = !s.structure.d.empty();  // false in a sweep of which no case has a start
+  if (const std::string why = structured ? only_taylor(*s.model, program(s.system, s.structure)) : ""; !why.empty())
+    refuse(why, "");
   if (tolerance) refuse(refused->why, asker.example("tolerance", "1e-8"));
   note_raised(method, o, asker);
   return chosen;

@@ -101,7 +101,7 @@ void add_verify(CommandLine& line) {
   c->add_option("--digits", o.digits, "of the enclosures at witnesses, at most (default 308)")
       ->type_name("N")
       ->check(CLI::Range(20, 20000));
-  c->add_option("--seed", o.seed, "another choice of points (default 0)")->type_name("N");
+  seed_option(c, o.seed, "another choice of points (default 0)");
 }
 
 }  // namespace anholon::cli

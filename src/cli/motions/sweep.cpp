@@ -113,6 +113,7 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   e.state = state_choice(o, *p.in.model);
   std::vector<std::string> set;
   for (const std::string& word : split(o.set)) set.push_back(normal_name(word.substr(0, word.find('='))));
+  for (const std::string& word : split(o.mode)) set.push_back(normal_name(word.substr(0, word.find('='))));
   must_not_be_given(p.variation->varied(), e.state, set);
   e.varied = p.variation->varied();
   e.state.open_parameters = varied_parameters(e);
@@ -120,10 +121,13 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   e.numbers = [&variation = *p.variation](std::size_t k) { return EnsembleCase{variation(k), {}}; };
   e.threads = static_cast<std::size_t>(o.threads);
   e.reductions = reductions_of(o, p.in);
+  switch_with(contacts(*p.in.names), *p.in.model, e);
+  e.identities = identities(*p.in.names);
   p.start = ready(p.in, form(o, *p.in.model), e.state, p.scenario);
   form(o, *p.in.model, Workspace(p.scenario).mechanics.get());
   if (const auto d = not_integrated(*p.in.model)) throw UsageError{print(*d, p.in.source)};
   if (!o.show.empty()) return false;
+  if (!p.start.ok()) scenario_of_cases(e, p.scenario);
   ask(o.motion, p.scenario, asker(), e);
   try {
     if (o.mode.empty()) move_with(contacts(*p.in.names), e);
@@ -218,11 +222,6 @@ int sweep(const SweepCommand& asked) {
     p.asked = o;
     if (!names.empty()) p.word = names[k], p.asked.cases.push_back(names[k]);
     if (!prepare(p, table)) return show(p.asked, p.scenario);
-    if (!p.start.ok()) p.start = scenario_of_cases(p.options, p.scenario);
-    if (!p.start.ok()) {
-      print_outcome(p.start);
-      return kStopped;
-    }
     must_have_columns_of(*parts.front().table, parts.front().word, *p.table, p.word,
                          "--columns chooses those that both have");
     cases += p.options.cases;

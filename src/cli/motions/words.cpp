@@ -106,7 +106,7 @@ void add_sweep(CommandLine& line) {
                 "random (default), or sobol: points of a Sobol sequence, which lie more evenly; -n a power of 2")
       ->type_name("HOW")
       ->check(CLI::IsMember({"random", "sobol"}));
-  c->add_option("--seed", o.seed, "other draws (default 0)")->type_name("N");
+  seed_option(c, o.seed, "other draws (default 0)");
   c->add_option("--reduce", o.reduce,
                 "over each motion: max(FORMULA), min(FORMULA) or mean(FORMULA), by its Taylor polynomials; "
                 "last(FORMULA), at its end; "

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "model/exponents.h"
+#include "setup/eliminate.h"
+#include "setup/start/orientations.h"
 
 namespace anholon {
 
@@ -54,8 +56,12 @@ bool each_is_determined(const std::vector<std::vector<int>>& sigma, const Struct
 
 }  // namespace
 
-CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) : s_(s), varied_(varied) {
-  const Model& model = *s.model;
+CaseParameters::CaseParameters(Workspace& s, const EnsembleOptions& o)
+    : s_(s), varied_(o.varied), identities_(o.identities) {
+  const std::shared_ptr<const Model> given = o.each_anew ? clone(*o.each_anew) : s.model;
+  const Model& model = *given;
+  const std::vector<Varied>& varied = varied_;
+  may_be_no_rotation_ = anholon::may_be_no_rotation(*s.model);
   any_ = std::any_of(varied.begin(), varied.end(), [](const Varied& v) { return v.kind == Varied::Kind::parameter; });
   if (model.parameters.empty()) return;
   tape_ = parameter_tape(model, varied);
@@ -79,6 +85,7 @@ CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) 
     for (const Axis& a : b.axes) checks_.back().axes.push_back(a.own), es.push_back(a.weight);
   }
   if (!es.empty()) bodies_ = compile(es);
+  if (o.each_anew) return;
   const std::shared_ptr<Model> own = clone(model);
   std::vector<std::size_t> indices;
   for (const Varied& v : varied)
@@ -88,6 +95,20 @@ CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) 
   goes_beyond_ = may_go_beyond(whole_, s.structure);
   equations_ = compile(whole_.equations);
   of_scenario_ = parameter_values<double>(model);
+  if (!o.switches) return;
+  Column active;
+  for (const Expr e : o.switches->active) active.push_back(s.graph().own(e));
+  switches_ = compile(active);
+  hold_ = that_hold(of_scenario_);
+}
+
+// Tells for each formula that switches a constraint whether it is positive.
+std::vector<bool> CaseParameters::that_hold(const std::vector<double>& parameters) const {
+  Machine<double> machine(*switches_, 0, parameters);
+  machine.evaluate();
+  std::vector<bool> hold;
+  for (std::size_t i = 0; i < switches_->roots.size(); ++i) hold.push_back(machine.value(i) > 0);
+  return hold;
 }
 
 template <Number N>
@@ -110,6 +131,8 @@ Outcome CaseParameters::possible(const std::vector<double>& parameters) const {
     if (!is_finite(parameters[i]))
       return {OutcomeKind::not_a_number, "the parameter '" + s_.model->parameters[i].name + "' has no value",
               "look for roots of negative numbers and divisions by zero among the parameters"};
+  if (const auto d = first_violated(identities_, parameters))
+    return {OutcomeKind::inconsistent, d->message, d->hint, d->span};
   if (!bodies_) return {};
   Machine<double> machine(*bodies_, 0, parameters);
   machine.evaluate();
@@ -146,7 +169,21 @@ Outcome CaseParameters::possible(const std::vector<double>& parameters) const {
   return {};
 }
 
+template <Number N>
+Outcome CaseParameters::oriented(const std::vector<double>& parameters, const InitialState<N>& start) const {
+  InitialState<double> narrow;
+  narrow.t = to_double(start.t);
+  for (const N& x : start.q) narrow.q.push_back(to_double(x));
+  for (const N& x : start.qd) narrow.qd.push_back(to_double(x));
+  for (const N& x : start.states) narrow.states.push_back(to_double(x));
+  PointValues at = values_near(*s_.model, parameters, narrow);
+  return anholon::oriented(*s_.model, at);
+}
+template Outcome CaseParameters::oriented(const std::vector<double>&, const InitialState<double>&) const;
+template Outcome CaseParameters::oriented(const std::vector<double>&, const InitialState<long double>&) const;
+
 bool CaseParameters::same_structure(const std::vector<double>& parameters) const {
+  if (switches_ && that_hold(parameters) != hold_) return false;
   if (exponents_) {
     Machine<double> machine(*exponents_, 0, parameters);
     machine.evaluate();

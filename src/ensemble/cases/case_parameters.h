@@ -8,7 +8,7 @@ namespace anholon {
 // Builds no expressions after its construction, so many threads may read it.
 class CaseParameters {
  public:
-  CaseParameters(Workspace& scenario, const std::vector<Varied>& varied);
+  CaseParameters(Workspace& scenario, const EnsembleOptions& options);
 
   // True if a parameter is varied; otherwise all cases have the same values.
   bool varies() const { return any_; }
@@ -18,18 +18,30 @@ class CaseParameters {
   // Fails if a body cannot have such a mass or inertia: a negative mass, or a principal moment of inertia greater than
   // the sum of the two others. (The reader refuses such numbers in a file.)
   Outcome possible(const std::vector<double>& parameters) const;
+  // True if `oriented` may fail for some parameters or states.
+  bool may_be_no_rotation() const { return may_be_no_rotation_; }
+  // Fails if an orientation is no rotation at the start of a case.
+  template <Number N>
+  Outcome oriented(const std::vector<double>& parameters, const InitialState<N>& start) const;
   // True if the equations contain no derivative beyond those that are solved for (sigma_ij <= d_j - c_i), which they
   // may if a mass or a coefficient is zero in the file and not in the case; if, when a parameter vanishes, they still
-  // determine each unknown; and if no exponent that varies is a whole number, which would become a constant.
+  // determine each unknown; if no exponent that varies is a whole number, which would become a constant; and if the same
+  // constraints hold as in the scenario.
   bool same_structure(const std::vector<double>& parameters) const;
 
  private:
+  std::vector<bool> that_hold(const std::vector<double>& parameters) const;
+
   const Scenario& s_;
   const std::vector<Varied>& varied_;
+  const std::vector<Identity>& identities_;
   bool any_ = false;  // true if a parameter is varied
+  bool may_be_no_rotation_ = false;
   Tape tape_;
   std::optional<Tape> bodies_;
   std::optional<Tape> exponents_;    // the exponents that vary
+  std::optional<Tape> switches_;     // the formulas that switch constraints
+  std::vector<bool> hold_;           // the constraints with these formulas hold in the scenario
   std::optional<Tape> equations_;    // the equations whose structure depends on the parameters
   std::vector<double> of_scenario_;  // the parameters of the scenario
   bool goes_beyond_ = false;         // some parameters may give the equations derivatives beyond

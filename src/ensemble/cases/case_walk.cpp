@@ -24,9 +24,9 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
   }
   r.t = plan.scenario.state.t;
   if (r.outcome = plan.parameters.possible(narrow_parameters_); !r.outcome.ok()) return CaseWay::plain;
+  if (plan.options.own_motion || plan.options.each_anew) return CaseWay::derivation;
   if (!ready_) same_structure_ = plan.parameters.same_structure(narrow_parameters_);
   if (!same_structure_) return CaseWay::derivation;
-  if (plan.options.own_motion) return CaseWay::derivation;
   if (!plan.plain) return CaseWay::simulation;
   if (!ready_) {
     lane_ = {kernel, lane};
@@ -43,6 +43,8 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
   problem.plan = &*plan.start;
   r.outcome = consistent_state(problem, *starts_, named_);
   r.t = to_double(named_.t);
+  if (r.outcome.ok() && plan.parameters.may_be_no_rotation())
+    r.outcome = plan.parameters.oriented(narrow_parameters_, named_);
   if (!r.outcome.ok()) return CaseWay::plain;
   std::vector<W> state;
   for (const Node& n : plan.entries) {

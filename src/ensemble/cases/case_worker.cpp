@@ -157,8 +157,9 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   Reducer reducer(o.reductions, o.tolerance.get_d());
   const std::size_t ends = o.reductions.ends.size(), formulas = o.reductions.formulas.size();
   if (formulas + ends > 0) {
-    options.followed = o.reductions.formulas;
-    options.followed.insert(options.followed.end(), o.reductions.ends.begin(), o.reductions.ends.end());
+    options.followed = formulas_in(own, o.reductions.formulas, o);
+    const Column of_ends = formulas_in(own, o.reductions.ends, o);
+    options.followed.insert(options.followed.end(), of_ends.begin(), of_ends.end());
     options.followed_at_ends = ends;
     options.dense = [&, ends, formulas](const StepPolynomials& step) {
       (void)reducer.step({step.end - step.begin, step.one_sided ? 0 : step.order - 1, step.followed,
@@ -195,6 +196,14 @@ void CaseWorker::by_simulation(const EnsembleCase& numbers, CaseResult& r) {
   const EnsembleOptions& o = plan_.options;
   for (std::size_t i = 0; i < o.varied.size(); ++i)
     if (o.varied[i].kind == Varied::Kind::parameter) own.set_parameter(o.varied[i].index, numbers.values[i]);
+  if (!plan_.plain && plan_.parameters.may_be_no_rotation()) {
+    const std::vector<double> parameters = parameter_values<double>(*own.model);
+    InitialState<double> start;
+    const InitialProblem<double> problem{own.mechanics.get(), parameters, overrides_of(o, &numbers),
+                                         o.state.t,           nullptr,    own.start.get()};
+    if (consistent_state(problem, start).ok()) r.outcome = plan_.parameters.oriented(parameters, start);
+    if (r.t = start.t; !r.outcome.ok()) return;
+  }
   simulate_case(own, numbers, r);
 }
 

@@ -46,7 +46,8 @@ class FurtherRuns {
 Outcome FurtherRuns::begin(const EnsembleCase& numbers) {
   StateChoice state = o_.state;
   state.overrides = overrides_of(o_, &numbers);
-  if (own_ && !exponents_vary_ && parameters_->same_structure(parameters_->values<double>(numbers.values))) {
+  if (own_ && !exponents_vary_ && !o_.each_anew &&
+      parameters_->same_structure(parameters_->values<double>(numbers.values))) {
     for (std::size_t i = 0; i < o_.varied.size(); ++i)
       if (o_.varied[i].kind == Varied::Kind::parameter) own_->set_parameter(o_.varied[i].index, numbers.values[i]);
     if (const std::optional<Outcome> begun = begin_anew(*own_, state)) return *begun;
@@ -59,7 +60,7 @@ Outcome FurtherRuns::begin(const EnsembleCase& numbers) {
   const Outcome o = scenario_of_case(of_all_, o_, numbers, of_case);
   if (!o.ok()) return o;
   own_ = std::make_unique<Workspace>(of_case);
-  parameters_.emplace(*own_, o_.varied);
+  parameters_.emplace(*own_, o_);
   return o;
 }
 

@@ -10,7 +10,7 @@
 namespace anholon {
 
 EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o)
-    : of_all(s), options(o), scenario(s), parameters(scenario, o.varied), lanes(o.cases, o.threads) {
+    : of_all(s), options(o), scenario(s), parameters(scenario, o), lanes(o.cases, o.threads) {
   make();
   scenario.graph().freeze();
 }
@@ -22,7 +22,7 @@ void EnsemblePlan::make() {
   const Graph& g = *model.graph;
   settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
   plain = (o.method == Method::automatic || o.method == Method::taylor) && !s.routh && s.redundant.empty() &&
-          s.elimination.pivots().empty() && !o.own_motion && model.bounds.empty();
+          s.elimination.pivots().empty() && !o.own_motion && !o.each_anew && model.bounds.empty();
   if (!plain) return;
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
   for (std::size_t j = 0; j < s.system.size(); ++j)
@@ -30,7 +30,7 @@ void EnsemblePlan::make() {
   Column quadratures;
   for (const VaryingMass& m : model.masses) quadratures.push_back(m.value);
   reduced.first = quadratures.size();
-  for (const Expr e : o.reductions.formulas) quadratures.push_back(s.graph().own(e));
+  for (const Expr e : formulas_in(s, o.reductions.formulas, o)) quadratures.push_back(e);
   settings.known_from = 0, settings.known_to = reduced.first, settings.followed_to = quadratures.size();
   for (std::size_t i = 0; i < o.reductions.formulas.size(); ++i) {
     std::vector<Reduced::Function>& functions = reduced.functions.emplace_back();
@@ -64,7 +64,7 @@ void EnsemblePlan::make() {
   }
   Column monitors;
   for (const Monitor& m : model.monitors) monitors.push_back(m.value);
-  for (const Expr e : o.reductions.ends) monitors.push_back(s.graph().own(e));
+  for (const Expr e : formulas_in(s, o.reductions.ends, o)) monitors.push_back(e);
   highest = largest_order(s, s.structure.d);
   stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitors));
   leading = stages > 0 || std::any_of(s.structure.d.begin(),

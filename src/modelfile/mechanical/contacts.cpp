@@ -180,7 +180,7 @@ class ContactReader {
     std::vector<Vector> axes;
     for (const Direction& d : list)
       if (d.axis) axes.push_back(*d.axis);
-    check_tangential(axes, t.normal, model_, along.span);
+    check_tangential(axes, t.normal, model_, along.span, scope_.identities);
     return list;
   }
 
@@ -285,7 +285,7 @@ class ContactReader {
     std::vector<Vector> axes;
     for (const Direction& d : orthonormal_directions(along, scope_)) axes.push_back(*d.axis);
     for (const Vector& d : axes) take(dot(v, d));
-    check_tangential(axes, gap, v, model_, along.span);
+    check_tangential(axes, gap, v, model_, along.span, scope_.identities);
   }
 
   Scope& scope_;

@@ -96,20 +96,21 @@ static std::optional<Rotation> rotation_of(const Vector& spin) {
 }
 
 // Checks at a few times that the axes are orthonormal, because only the user's formulas keep them so.
-static void check_orthonormal(const Rotation& a, const Model& model, Span span) {
+static void check_orthonormal(const Rotation& a, const Model& model, Span span, std::vector<Identity>& identities) {
   constexpr double kRounded = 1e-9;
+  constexpr const char *kWhat = "the observer's axes are not of length 1 and at right angles",
+                       *kHint = "spin = […] gives axes that are";
   Graph& g = *model.graph;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j <= i; ++j) {
       const Expr miss = dot(a[i], a[j]) - (i == j ? 1 : 0);
       if (proved_zero(miss)) continue;
       for (const Rational& t : {Rational(0), Rational(3, 10), Rational(2)}) {
-        const auto value = constant_value(model, substitute({&miss, 1}, [&](NodeId id) {
-                                            return g.node(id).kind == Kind::time ? g.number(t) : Expr{};
-                                          })[0]);
-        if (value && !(std::abs(*value) <= kRounded))
-          throw Failure(span, "the observer's axes are not of length 1 and at right angles",
-                        "spin = […] gives axes that are");
+        const Expr at =
+            substitute({&miss, 1}, [&](NodeId id) { return g.node(id).kind == Kind::time ? g.number(t) : Expr{}; })[0];
+        const auto value = constant_value(model, at);
+        if (value && !(std::abs(*value) <= kRounded)) throw Failure(span, kWhat, kHint);
+        add_identity(identities, at, kRounded, [=](double) { return std::string(kWhat); }, kHint, span);
       }
     }
 }
@@ -224,7 +225,7 @@ std::vector<ObserverFormula> read_observer(const Item& section, Scope& scope, Mo
   } else if (rotation) {
     a = scope.rotation(*rotation);
     for (int k = 0; k < 3; ++k) check((*a)[k], *rotation, 2);
-    if (!a->by_turns) check_orthonormal(*a, model, rotation->span);
+    if (!a->by_turns) check_orthonormal(*a, model, rotation->span, scope.identities);
     o.spin = a->own_rate;
   }
   const char* const kOrigins[] = {"origin_acceleration", "origin_velocity", "origin_velocity_inertial",

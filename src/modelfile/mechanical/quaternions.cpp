@@ -16,8 +16,9 @@ static bool same_constraint(Expr phi, Expr norm) {
   return false;
 }
 
-std::vector<UnitNorm> unit_norms(const Scope& scope, const Model& model) {
+std::vector<UnitNorm> unit_norms(Scope& scope, const Model& model) {
   constexpr double kRounded = 1e-9;
+  constexpr const char* kHint = "divide it by its norm, or write rot(axis, angle)";
   Graph& g = *model.graph;
   std::vector<UnitNorm> list;
   for (const Scope::Quaternion& q : scope.quaternions()) {
@@ -33,9 +34,15 @@ std::vector<UnitNorm> unit_norms(const Scope& scope, const Model& model) {
             substitute({&phi, 1}, [&](NodeId id) { return g.node(id).kind == Kind::time ? g.number(t) : Expr{}; })[0];
         const auto value = constant_value(model, at);
         if (value && !(std::abs(*value) <= kRounded))
-          throw Failure(q.span,
-                        "this quaternion is no rotation: the sum of its squares is " + number_text(*value + 1, 6),
-                        "divide it by its norm, or write rot(axis, angle)");
+          throw Failure(
+              q.span, "this quaternion is no rotation: the sum of its squares is " + number_text(*value + 1, 6), kHint);
+        add_identity(
+            scope.identities, at, kRounded,
+            [line = q.span.line](double v) {
+              return "the quaternion in line " + std::to_string(line) + " is no rotation: the sum of its squares is " +
+                     number_text(v + 1, 6);
+            },
+            kHint, q.span);
       }
       continue;
     }

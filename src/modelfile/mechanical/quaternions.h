@@ -14,8 +14,9 @@ struct UnitNorm {
   std::vector<std::size_t> coordinates;
 };
 
-// Returns the constraints to add for the quaternions read so far. Throws Failure for a quaternion that is no rotation.
-std::vector<UnitNorm> unit_norms(const Scope& scope, const Model& model);
+// Returns the constraints to add for the quaternions read so far. Throws Failure for a quaternion that is no rotation; a
+// quaternion of parameters becomes an identity of the scope.
+std::vector<UnitNorm> unit_norms(Scope& scope, const Model& model);
 
 // Starts a quaternion of four coordinates whose first is not given near the identity: the default guess 0 is not a
 // rotation.

@@ -12,14 +12,25 @@ namespace anholon {
 static constexpr double kRoundOff = 1e-9;
 
 static void check_tangential(const std::vector<Vector>& directions, const Vector& normal, const Model& model,
-                             Span along, const char* hint) {
-  for (const Vector& d : directions)
-    if (const auto part = constant_value(model, dot(d, normal)); part && std::abs(*part) > kRoundOff)
+                             Span along, const char* hint, std::vector<Identity>& identities) {
+  for (const Vector& d : directions) {
+    const Expr part = dot(d, normal);
+    if (const auto known = constant_value(model, part); known && std::abs(*known) > kRoundOff)
       throw Failure(along, "a direction of the slip has a part along the normal, which is no slip", hint);
+    add_identity(
+        identities, part, kRoundOff,
+        [line = along.line](double) {
+          return "a direction of the slip, in line " + std::to_string(line) +
+                 ", has a part along the normal, which is no slip";
+        },
+        hint, along);
+  }
 }
 
-void check_tangential(const std::vector<Vector>& directions, const Vector& normal, const Model& model, Span along) {
-  check_tangential(directions, normal, model, along, "leave out 'along': two tangential directions are chosen");
+void check_tangential(const std::vector<Vector>& directions, const Vector& normal, const Model& model, Span along,
+                      std::vector<Identity>& identities) {
+  check_tangential(directions, normal, model, along, "leave out 'along': two tangential directions are chosen",
+                   identities);
 }
 
 static Column velocities(const Model& model) {
@@ -72,7 +83,8 @@ static Vector owned(Graph& g, const Vector& v) { return {g.own(v[0]), g.own(v[1]
 
 // The check builds in a copy: its nodes in the graph of the model would change the order of terms in later formulas,
 // and so their round-off.
-void check_tangential(std::vector<Vector> directions, Expr gap, const Vector& v, const Model& of, Span along) {
+void check_tangential(std::vector<Vector> directions, Expr gap, const Vector& v, const Model& of, Span along,
+                      std::vector<Identity>& identities) {
   const std::shared_ptr<Model> model = clone(of);
   Graph& g = *model->graph;
   const Column by = velocities(*model);
@@ -80,7 +92,8 @@ void check_tangential(std::vector<Vector> directions, Expr gap, const Vector& v,
   for (Vector& d : directions) d = owned(g, d);
   if (normal)
     check_tangential(directions, *normal, *model, along,
-                     "the normal is the gradient of the gap: name one or two directions at right angles to it");
+                     "the normal is the gradient of the gap: name one or two directions at right angles to it",
+                     identities);
 }
 
 // The derivatives of gap' and of a slip velocity by the velocities that they contain.

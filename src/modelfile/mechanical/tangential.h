@@ -4,12 +4,15 @@
 
 namespace anholon {
 
-// Throws Failure, at the place of `along`, if a direction is known to have a part along the normal.
-void check_tangential(const std::vector<Vector>& directions, const Vector& normal, const Model& model, Span along);
+// Throws Failure, at the place of `along`, if a direction is known to have a part along the normal. A part that depends
+// on parameters alone becomes an identity.
+void check_tangential(const std::vector<Vector>& directions, const Vector& normal, const Model& model, Span along,
+                      std::vector<Identity>& identities);
 
 // Checks the same for the gap of a point with the velocity v: its normal is known if it is a fixed direction along
 // which v opens the gap.
-void check_tangential(std::vector<Vector> directions, Expr gap, const Vector& v, const Model& model, Span along);
+void check_tangential(std::vector<Vector> directions, Expr gap, const Vector& v, const Model& model, Span along,
+                      std::vector<Identity>& identities);
 
 // Throws Failure if a component of a slip velocity is not linear in the velocities, or is known to be along the normal.
 // It is that if it is a multiple of the velocity of the gap by a constant, or by any factor if the bodies move along

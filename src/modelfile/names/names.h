@@ -9,6 +9,7 @@
 
 #include "expr/table.h"
 #include "model/model.h"
+#include "modelfile/names/identity.h"
 #include "modelfile/text/collect.h"
 #include "modelfile/text/toml.h"
 
@@ -139,6 +140,8 @@ class Scope final : public Names {
     Span span;
   };
   const std::vector<Quaternion>& quaternions() const { return quaternions_; }
+
+  std::vector<Identity> identities;  // what holds for the numbers of the file, and has to hold for other numbers
 
  private:
   // A definition that leads through too many others to be evaluated in one go: it is evaluated after the definitions

@@ -680,13 +680,36 @@ TEST(Ensemble, TheFileNeedsNoStartOfItsOwn) {
   o.varied = {initial(0, 0)};
   o.cases = 3;
   o.numbers = [](std::size_t k) { return EnsembleCase{{Rational(static_cast<long>(3 - k))}, {}}; };
-  ASSERT_TRUE(scenario_of_cases(o, s).ok());
+  scenario_of_cases(o, s);
+  EXPECT_FALSE(o.each_anew);
   EXPECT_EQ(s.state.q[0], 2) << "of the second case";
   Results results;
   ensemble(s, o, results);
   EXPECT_EQ(results.list[0].outcome.kind, OutcomeKind::inconsistent);
   EXPECT_TRUE(results.list[1].outcome.ok());
   EXPECT_EQ(results.list[2].last[0], simulated(kPendulum, {}, 1)[1]);
+}
+
+// The first case with a start comes after those that are tried for a scenario of all cases.
+TEST(Ensemble, EachCaseHasAnOutcomeWhereTheFirstOnesHaveNoStart) {
+  constexpr std::size_t kWithout = 66;
+  Scenario s;
+  const std::string text = test::replaced(kPendulum, "x = 1", "x = 3");
+  EXPECT_FALSE(make_scenario(test::model_of(text), *find_formulation("routh"), {}, s).ok());
+  EnsembleOptions o;
+  o.to = 1;
+  o.kernel = false;
+  o.varied = {initial(0, 0)};
+  o.cases = kWithout + 1;
+  o.numbers = [](std::size_t k) { return EnsembleCase{{Rational(k < kWithout ? 3 : 1)}, {}}; };
+  scenario_of_cases(o, s);
+  EXPECT_TRUE(o.each_anew);
+  Results results;
+  ensemble(s, o, results);
+  ASSERT_EQ(results.list.size(), kWithout + 1);
+  for (std::size_t k = 0; k < kWithout; ++k) ASSERT_EQ(results.list[k].outcome.kind, OutcomeKind::inconsistent) << k;
+  ASSERT_TRUE(results.list[kWithout].outcome.ok());
+  EXPECT_EQ(results.list[kWithout].last[0], simulated(kPendulum, {}, 1)[1]);
 }
 
 // Of nine pendulums, the first, the middle and the last are compared with runs of smaller tolerance.

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "setup/choice.h"
-#include "setup/large_angles.h"
 #include "setup/scenario.h"
+#include "setup/start/large_angles.h"
 #include "support/models.h"
 
 namespace anholon::large_angles_test {

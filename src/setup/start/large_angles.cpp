@@ -1,4 +1,4 @@
-#include "setup/large_angles.h"
+#include "setup/start/large_angles.h"
 
 #include <algorithm>
 #include <cmath>
