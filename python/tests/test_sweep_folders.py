@@ -448,3 +448,21 @@ def test_a_process_that_fills_a_folder_ends_without_a_word(tmp_path: pathlib.Pat
     script = "import numpy, anholon as an\nan.load('disc').sweep({\"phi'\": [5, 6]}, to=1, out='falls')"
     done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_a_motion_that_an_event_ends_shows_the_state_before_it(tmp_path):
+    model = an.loads(
+        """
+coordinates = ["x"]
+parameters = {e = 0.5}
+particle = [{name = "p", mass = 1, position = "x*ex"}]
+gravity.field = "-10*ex"
+initial = {x = 0.8}
+event = [{name = "hit", when = "x", direction = "down", stop = true, set = {"x'" = "-e*x'"}}]
+"""
+    )
+    model.sweep({"e": ["0.5", "1"]}, to=1, reduce=["last(x')"], out=tmp_path / "falls")
+    folder = an.open_sweep(tmp_path / "falls")
+    for case in range(2):
+        assert folder["x'"][case] == folder["last(x')"][case] == -4
+        assert folder.run(case)["x'"][-1] == -4

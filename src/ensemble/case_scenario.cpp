@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "model/exponents.h"
+
 namespace anholon {
 
 std::vector<std::size_t> varied_parameters(const EnsembleOptions& o) {
@@ -45,6 +47,12 @@ static Outcome with_numbers(const Scenario& of_all, const EnsembleOptions& o, co
 Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& o, const EnsembleCase& numbers,
                          Scenario& scenario) {
   return with_numbers(of_all, o, numbers, std::vector<std::size_t>{}, scenario);
+}
+
+Column formulas_in(Workspace& s, const Column& formulas, const std::vector<std::size_t>& open) {
+  Column own;
+  for (const Expr e : formulas) own.push_back(s.graph().own(e));
+  return with_whole_exponents(*s.model, own, open);
 }
 
 Outcome scenario_of_cases(const EnsembleOptions& o, Scenario& scenario) {

@@ -14,6 +14,9 @@ SimulationOptions options_of_case(const EnsembleOptions& options, const Ensemble
 // are whole numbers become constants.
 Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& options, const EnsembleCase& numbers,
                          Scenario& scenario);
+// Returns formulas of the reductions in the graph of a workspace; their exponents are replaced as those of the model
+// are, unless they depend on one of the parameters `open`.
+Column formulas_in(Workspace& workspace, const Column& formulas, const std::vector<std::size_t>& open);
 // For a model whose own numbers, those of `scenario`, have no consistent start: replaces `scenario` by that of the
 // first case that has one. Fails if none of the first cases has one.
 Outcome scenario_of_cases(const EnsembleOptions& options, Scenario& scenario);

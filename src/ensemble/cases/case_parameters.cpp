@@ -54,7 +54,8 @@ bool each_is_determined(const std::vector<std::vector<int>>& sigma, const Struct
 
 }  // namespace
 
-CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) : s_(s), varied_(varied) {
+CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied, const Column& reduced)
+    : s_(s), varied_(varied) {
   const Model& model = *s.model;
   any_ = std::any_of(varied.begin(), varied.end(), [](const Varied& v) { return v.kind == Varied::Kind::parameter; });
   if (model.parameters.empty()) return;
@@ -83,7 +84,11 @@ CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) 
   std::vector<std::size_t> indices;
   for (const Varied& v : varied)
     if (v.kind == Varied::Kind::parameter) indices.push_back(v.index);
-  if (const Column exponents = exponents_of(*own, indices); !exponents.empty()) exponents_ = compile(exponents);
+  Column exponents = exponents_of(*own, indices);
+  Column formulas;
+  for (const Expr e : reduced) formulas.push_back(own->graph->own(e));
+  for (const Expr e : exponents_of(*own, formulas, indices)) exponents.push_back(e);
+  if (!exponents.empty()) exponents_ = compile(exponents);
   whole_ = implicit_system(s.model, *s.mechanics, *s.system.form, s.independent, s.elimination);
   goes_beyond_ = may_go_beyond(whole_, s.structure);
   equations_ = compile(whole_.equations);

@@ -8,7 +8,8 @@ namespace anholon {
 // Builds no expressions after its construction, so many threads may read it.
 class CaseParameters {
  public:
-  CaseParameters(Workspace& scenario, const std::vector<Varied>& varied);
+  // `reduced`: formulas of reductions, of the graph of the scenario.
+  CaseParameters(Workspace& scenario, const std::vector<Varied>& varied, const Column& reduced = {});
 
   // True if a parameter is varied; otherwise all cases have the same values.
   bool varies() const { return any_; }

@@ -157,8 +157,9 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   Reducer reducer(o.reductions, o.tolerance.get_d());
   const std::size_t ends = o.reductions.ends.size(), formulas = o.reductions.formulas.size();
   if (formulas + ends > 0) {
-    options.followed = o.reductions.formulas;
-    options.followed.insert(options.followed.end(), o.reductions.ends.begin(), o.reductions.ends.end());
+    options.followed = formulas_in(own, o.reductions.formulas, {});
+    const Column at_ends = formulas_in(own, o.reductions.ends, {});
+    options.followed.insert(options.followed.end(), at_ends.begin(), at_ends.end());
     options.followed_at_ends = ends;
     options.dense = [&, ends, formulas](const StepPolynomials& step) {
       (void)reducer.step({step.end - step.begin, step.one_sided ? 0 : step.order - 1, step.followed,
@@ -170,6 +171,11 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
       std::vector<double> values;
       for (std::size_t i = 0; i < ends; ++i)
         values.push_back(step.followed_value(formulas + i, step.end - step.begin).first);
+      reducer.ends(std::move(values));
+    };
+    options.stopped = [&, ends, formulas](const std::function<double(std::size_t)>& followed) {
+      std::vector<double> values;
+      for (std::size_t i = 0; i < ends; ++i) values.push_back(followed(formulas + i));
       reducer.ends(std::move(values));
     };
   }
@@ -186,7 +192,8 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   if (moved && !o.reductions.list.empty()) reducer.values(r.reduced);
   r.outcome = report.outcome;
   r.steps = report.steps;
-  r.t = report.t;
+  // The time of a motion that stops is that of its last good state.
+  if (r.outcome.ok() || r.last.empty()) r.t = report.t;
 }
 
 void CaseWorker::by_simulation(const EnsembleCase& numbers, CaseResult& r) {

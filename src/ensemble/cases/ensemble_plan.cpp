@@ -6,11 +6,19 @@
 #include "motion/representation.h"
 #include "observe/watch.h"
 #include "setup/output_tape.h"
+#include "simulation/lost_value.h"
 
 namespace anholon {
 
+static Column all_formulas(const Reductions& r) {
+  Column all = r.formulas;
+  all.insert(all.end(), r.ends.begin(), r.ends.end());
+  return all;
+}
+
 EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o)
-    : of_all(s), options(o), scenario(s), parameters(scenario, o.varied), lanes(o.cases, o.threads) {
+    : of_all(s), options(o), scenario(s), parameters(scenario, o.varied, all_formulas(o.reductions)),
+      lanes(o.cases, o.threads) {
   make();
   scenario.graph().freeze();
 }
@@ -22,7 +30,8 @@ void EnsemblePlan::make() {
   const Graph& g = *model.graph;
   settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
   plain = (o.method == Method::automatic || o.method == Method::taylor) && !s.routh && s.redundant.empty() &&
-          s.elimination.pivots().empty() && !o.own_motion && model.bounds.empty();
+          s.elimination.pivots().empty() && !o.own_motion && model.bounds.empty() &&
+          events_with_logarithms(model).empty();
   if (!plain) return;
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
   for (std::size_t j = 0; j < s.system.size(); ++j)
@@ -30,7 +39,8 @@ void EnsemblePlan::make() {
   Column quadratures;
   for (const VaryingMass& m : model.masses) quadratures.push_back(m.value);
   reduced.first = quadratures.size();
-  for (const Expr e : o.reductions.formulas) quadratures.push_back(s.graph().own(e));
+  const Column formulas = formulas_in(s, o.reductions.formulas, varied_parameters(o));
+  quadratures.insert(quadratures.end(), formulas.begin(), formulas.end());
   settings.known_from = 0, settings.known_to = reduced.first, settings.followed_to = quadratures.size();
   for (std::size_t i = 0; i < o.reductions.formulas.size(); ++i) {
     std::vector<Reduced::Function>& functions = reduced.functions.emplace_back();
@@ -64,7 +74,8 @@ void EnsemblePlan::make() {
   }
   Column monitors;
   for (const Monitor& m : model.monitors) monitors.push_back(m.value);
-  for (const Expr e : o.reductions.ends) monitors.push_back(s.graph().own(e));
+  const Column ends = formulas_in(s, o.reductions.ends, varied_parameters(o));
+  monitors.insert(monitors.end(), ends.begin(), ends.end());
   highest = largest_order(s, s.structure.d);
   stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitors));
   leading = stages > 0 || std::any_of(s.structure.d.begin(),
