@@ -466,3 +466,21 @@ initial = {th = "10 deg"}
             assert opened.run(case)["th"][-1] == pytest.approx(opened["th"][case], rel=1e-13)
     values = model.stability("l", 25, 50, 2, about="equilibrium")
     assert values.values.tolist() == [0.25, 0.5]
+
+
+def test_a_motion_that_an_event_ends_shows_the_state_before_it(tmp_path: pathlib.Path) -> None:
+    model = an.loads(
+        """
+coordinates = ["x"]
+parameters = {e = 0.5}
+particle = [{name = "p", mass = 1, position = "x*ex"}]
+gravity.field = "-10*ex"
+initial = {x = 0.8}
+event = [{name = "hit", when = "x", direction = "down", stop = true, set = {"x'" = "-e*x'"}}]
+"""
+    )
+    model.sweep({"e": ["0.5", "1"]}, to=1, reduce=["last(x')"], out=tmp_path / "falls")
+    folder = an.open_sweep(tmp_path / "falls")
+    for case in range(2):
+        assert folder["x'"][case] == folder["last(x')"][case] == -4
+        assert folder.run(case)["x'"][-1] == -4

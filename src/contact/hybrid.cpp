@@ -12,6 +12,7 @@
 #include "contact/mode_segments.h"
 #include "contact/refused_options.h"
 #include "contact/slip_start.h"
+#include "contact/surface/contact_exponents.h"
 #include "contact/surface/gap_roots.h"
 #include "contact/switched_motion.h"
 #include "integrate/step_control.h"
@@ -44,6 +45,8 @@ class HybridMotion {
     if (const std::vector<Diagnostic> wrong = wrong_coefficients(bodies_.contacts, *s_.model); !wrong.empty())
       return joined_.report({OutcomeKind::inconsistent, wrong[0].message, wrong[0].hint, wrong[0].span},
                             bodies_.at.t.get_d(), 0);
+    if (Outcome o = all_pass_zero(*s_.model, bodies_.contacts); !o.ok())
+      return joined_.report(std::move(o), bodies_.at.t.get_d(), 0);
     Outcome outcome = not_inside(" at the start", {}, true);
     constexpr std::size_t kMostSegments = 100'000;
     for (std::size_t k = 0; outcome.ok() && bodies_.at.t < end_; ++k) {
@@ -118,11 +121,21 @@ class HybridMotion {
                           "plane the body is");
   }
 
+  // If the event of a contact has no value, its gap has none.
+  static void name_gap(const Contact& c, Outcome& outcome) {
+    const std::string event = "the formula of the event '" + c.name + ".hits' has no value";
+    if (outcome.kind != OutcomeKind::not_a_number || !outcome.message.starts_with(event)) return;
+    outcome.message.replace(0, event.size(), "the gap of contact '" + c.name + "' has no value");
+    outcome.hint = "a gap has values on both sides of the surface: abs(z)^n*sign(z) in place of z^n";
+    outcome.place = c.span;
+  }
+
   // The velocities at the start of a mode are not from the user, so the outcome does not blame the user's values.
   void explain(Outcome& outcome) {
     if (outcome.kind == OutcomeKind::inconsistent)
       outcome = {OutcomeKind::singular, "no velocities fit the modes of the contacts" + when(),
                  "end the motion before, or take coordinates that are regular there"};
+    for (const Contact& c : bodies_.contacts) name_gap(c, outcome);
     name_angles(outcome);
   }
 
@@ -492,8 +505,9 @@ SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>
         "leave out 'active', or write the contact as a soft one: [[force]] with vector = \"-k*min(P.z, 0)*ez\"");
   refuse_options(options, s, held > 0);
   const auto start = std::chrono::steady_clock::now();
+  const std::vector<Contact> own = with_whole_exponents(s, contacts);
   SimulationReport r =
-      held > 0 ? simulate_with_switches(s, contacts, options, sink) : HybridMotion(s, contacts, options, sink).go();
+      held > 0 ? simulate_with_switches(s, own, options, sink) : HybridMotion(s, own, options, sink).go();
   for (const std::string& note : r.notes)
     if (options.note && is_of_support(note)) options.note(note);
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -40,10 +40,12 @@ SimulationOptions options_of_case(const EnsembleOptions& o, const EnsembleCase& 
   return options;
 }
 
-Column formulas_in(Workspace& own, const Column& formulas, const EnsembleOptions& o) {
+Column formulas_in(Workspace& own, const Column& formulas, const EnsembleOptions& o,
+                   const std::vector<std::size_t>& open) {
   Graph& g = own.graph();
   Column list;
   for (const Expr e : formulas) list.push_back(g.own(e));
+  list = with_whole_exponents(*own.model, list, open);
   if (!o.switches || o.switches->multipliers == own.model->names.multipliers) return list;
   return substitute(list, [&](NodeId id) {
     const Node& n = g.node(id);

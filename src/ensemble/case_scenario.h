@@ -11,8 +11,10 @@ std::vector<StateOverride> overrides_of(const EnsembleOptions& options, const En
 // The options with which `simulate` computes a case, as far as they are common to all ways of computing it.
 SimulationOptions options_of_case(const EnsembleOptions& options, const EnsembleCase& numbers);
 // Returns formulas of reductions in the graph of a workspace. Multipliers of constraints that parameters switch become
-// those of the workspace, or zeros.
-Column formulas_in(Workspace& own, const Column& formulas, const EnsembleOptions& options);
+// those of the workspace, or zeros. Exponents are replaced as those of the model are, unless they depend on one of the
+// parameters `open`.
+Column formulas_in(Workspace& own, const Column& formulas, const EnsembleOptions& options,
+                   const std::vector<std::size_t>& open);
 // Makes the scenario of a case, derived anew with its numbers in the form of the scenario of all cases. Exponents that
 // are whole numbers become constants.
 Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& options, const EnsembleCase& numbers,

@@ -348,6 +348,7 @@ void Reducer::see(Seen& s, double h, double scale) {
     double over = 0;
     for (int k = degree; k >= 0; --k) over = over * h + c[static_cast<std::size_t>(k)] / (k + 1);
     add_compensated(s.integral, s.carry, over * h * scale);
+    s.weight += std::abs(over * h * scale);
   }
   if (s.greatest) s.most = greatest_on(c.data(), degree, h, s.most);
   if (!s.least) return;
@@ -415,7 +416,10 @@ void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
     const Interpolation there(f, p.from, p.to);
     size = std::max(size, there.size());
     if (there.without_value() > 0) {
-      if (p.depth >= kTiny) {
+      // A motion that stops has no solution at the end of its last step.
+      const bool all_beyond = there.beyond_motion() == Interpolation::kPoints && p.depth >= kLongWithout;
+      if (all_beyond) s.beyond += p.to - p.from;
+      if (p.depth >= kTiny || all_beyond) {
         const double length = std::abs(p.to - p.from);
         for (const double v : there.values()) {
           if (std::isinf(v)) (v > 0 ? most : fewest) = v;
@@ -423,7 +427,8 @@ void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
         }
         continue;
       }
-      s.lost = !divisible || (p.depth >= kLongWithout && there.without_value() == Interpolation::kPoints);
+      s.lost = !divisible || (p.depth >= kLongWithout && there.beyond_motion() == 0 &&
+                              there.without_value() == Interpolation::kPoints);
     }
     const bool good = there.good(tolerance_ * size) && ends_as(there, p);
     const auto [lowest, highest] = std::minmax_element(there.values().begin(), there.values().end());
@@ -439,6 +444,7 @@ void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
       continue;
     }
     add_compensated(s.integral, s.carry, there.mean() * (p.to - p.from));
+    s.weight += std::abs(there.mean() * (p.to - p.from));
     most = std::max(most, *highest), fewest = std::min(fewest, *lowest);
     in_doubt += (*highest - *lowest) * std::abs(p.to - p.from);
     s.last = there.values().back();
@@ -449,8 +455,9 @@ void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
   };
   if (most > s.most) s.greatest = s.greatest && !far_beyond(most, s.most), s.most = most;
   if (fewest < s.fewest) s.least = s.least && !far_beyond(-fewest, -s.fewest), s.fewest = fewest;
-  constexpr double kMostDoubt = 1e-6;
-  if (in_doubt > kMostDoubt * weight) s.mean = false;
+  // Pieces that do not matter are as long as the tolerance allows.
+  constexpr double kMostDoubt = 1e-6, kTolerances = 10, kCoarse = 0.1;
+  if (in_doubt > std::max(kMostDoubt, std::min(kTolerances * tolerance_, kCoarse)) * weight) s.doubt += in_doubt;
   if (const double end = f(step.h).value; std::isfinite(end)) s.last = end;
 }
 
@@ -477,6 +484,8 @@ void Reducer::values(std::vector<double>& to) const {
     }
     const Seen& s = seen_[r.of];
     const bool none = s.lost || std::isnan(s.last);
+    // A step so short that its values are round-off, as between the last impacts of a ball, does not weigh.
+    constexpr double kNegligible = 1e-10;
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     switch (r.kind) {
     case Reduction::Kind::greatest:
@@ -486,7 +495,9 @@ void Reducer::values(std::vector<double>& to) const {
       to.push_back(none || !s.least ? kNone : s.fewest);
       break;
     case Reduction::Kind::mean:
-      to.push_back(none || !s.mean ? kNone : length_ == 0 ? s.last : (s.integral + s.carry) / length_);
+      to.push_back(none || !(s.doubt <= kNegligible * s.weight) ? kNone
+                   : length_ == s.beyond                        ? s.last
+                                                                : (s.integral + s.carry) / (length_ - s.beyond));
       break;
     case Reduction::Kind::last:
     case Reduction::Kind::count:

@@ -83,6 +83,8 @@ class Reducer {
     bool lost = false;                                   // a value is missing
     bool done() const { return lost || !(greatest || least || mean); }
     double most = 0, fewest = 0, last = 0, integral = 0, carry = 0;
+    double beyond = 0;             // the length of the pieces where the motion has no solution
+    double weight = 0, doubt = 0;  // the integral of magnitudes, and the part of it that may diverge
   };
   struct Fired {
     double times = 0, first = 0;

@@ -77,39 +77,60 @@ bool depends(const FixedExponent& e, const std::vector<std::size_t>& on) {
   return std::any_of(on.begin(), on.end(), [&](std::size_t i) { return e.follows_from.count(i) > 0; });
 }
 
-}  // namespace
-
-void put_whole_exponents(Model& model, const std::vector<std::size_t>& open) {
-  Graph& g = *model.graph;
-  const Column all = all_expressions(model);
+// The nodes that whole exponents replace in some formulas.
+struct Replacements {
   std::unordered_map<NodeId, Expr> by;
-  std::set<std::size_t> known;
-  for (NodeId id : reachable(all)) {
+  std::set<std::size_t> known;  // the parameters in these exponents
+};
+
+Replacements replacements(const Model& model, const Column& formulas, const std::vector<std::size_t>& open) {
+  Graph& g = *model.graph;
+  Replacements r;
+  for (NodeId id : reachable(formulas)) {
     const std::optional<FixedPower> p = fixed_power(g, id);
     const std::optional<FixedExponent> e = p ? fixed(model, p->exponent) : std::nullopt;
     if (!e || !whole(e->value) || depends(*e, open)) continue;
-    const Expr base = replace_nodes({&p->base, 1}, by).front();
+    const Expr base = replace_nodes({&p->base, 1}, r.by).front();
     if (is_zero(base)) continue;
-    by.emplace(id, pow(base, number_value(e->value)));
-    known.insert(e->in_it.begin(), e->in_it.end());
+    r.by.emplace(id, pow(base, number_value(e->value)));
+    r.known.insert(e->in_it.begin(), e->in_it.end());
   }
-  if (by.empty()) return;
-  for (const std::size_t i : known) {
+  for (const std::size_t i : r.known) {
     std::set<std::size_t> used;
-    by.emplace(g.parameter(static_cast<std::uint32_t>(i)).id, *with_values(model, model.parameters[i].value, used));
+    r.by.emplace(g.parameter(static_cast<std::uint32_t>(i)).id, *with_values(model, model.parameters[i].value, used));
+  }
+  return r;
+}
+
+}  // namespace
+
+void put_whole_exponents(Model& model, const std::vector<std::size_t>& open) {
+  const Column all = all_expressions(model);
+  const Replacements r = replacements(model, all, open);
+  if (r.by.empty()) return;
+  for (const std::size_t i : r.known) {
     std::string& doc = model.parameters[i].doc;
     doc += doc.empty() ? "in a whole exponent: put in as a number" : " (in a whole exponent: put in as a number)";
   }
-  const Column replaced = replace_nodes(all, by);
+  const Column replaced = replace_nodes(all, r.by);
   std::size_t next = 0;
   for_each_expression(model, [&](Expr& e) {
     if (e.graph) e = replaced[next++];
   });
 }
 
+Column with_whole_exponents(const Model& model, const Column& formulas, const std::vector<std::size_t>& open) {
+  const Replacements r = replacements(model, formulas, open);
+  return r.by.empty() ? formulas : replace_nodes(formulas, r.by);
+}
+
 Column exponents_of(Model& model, const std::vector<std::size_t>& parameters) {
+  return exponents_of(model, all_expressions(model), parameters);
+}
+
+Column exponents_of(const Model& model, const Column& formulas, const std::vector<std::size_t>& parameters) {
   Column list;
-  for (NodeId id : reachable(all_expressions(model))) {
+  for (NodeId id : reachable(formulas)) {
     const std::optional<FixedPower> p = fixed_power(*model.graph, id);
     if (const auto e = p ? fixed(model, p->exponent) : std::nullopt; e && depends(*e, parameters))
       list.push_back(p->exponent);

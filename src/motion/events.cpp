@@ -132,28 +132,34 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
     occurrences.push_back(std::move(occurrence));
   }
   if (!set) return {};
+  std::unique_ptr<Leg> left;
+  const std::vector<W> modes = parameters_;
   if (parameters != parameters_) {
     set_modes(parameters);
     auto next = same_leg();
     take(plans(), *next);
     next->at_once = leg_->at_once;
     next->stepper.adopt(leg_->stepper);
-    leg_ = std::move(next);
+    left = std::exchange(leg_, std::move(next));
     choices_.pivots.clear();
   }
+  const auto fail = [&](Outcome why) {
+    before_events_ = {std::move(left), modes};
+    return why;
+  };
   const std::vector<W> as_set = state;
   Outcome o = to_nearest(state);
   if (o.ok()) o = leg_->stepper.restart(state);
   begun_parameters_ = parameters_;
   if (!o.ok()) {
     o.message = "after the event '" + set->name + "': " + o.message;
-    return o;
+    return fail(std::move(o));
   }
   const std::string after = "after the event '" + set->name + "', at t = " + number_text(to_double(now), 12);
   if (goes_on)
-    if (o = all_have_values(*s_.model, leg_->stepper, quadratures_.size(), after); !o.ok()) return o;
+    if (o = all_have_values(*s_.model, leg_->stepper, quadratures_.size(), after); !o.ok()) return fail(std::move(o));
   for (std::size_t i = 0; i < met.size(); ++i)
-    if (leaves(i, met[i], now > start)) return beyond(s_.model->bounds[i], to_double(now));
+    if (leaves(i, met[i], now > start)) return fail(beyond(s_.model->bounds[i], to_double(now)));
   W correction(0);
   const std::vector<W>& consistent = leg_->stepper.state();
   for (std::size_t i = 0; i < state.size(); ++i)

@@ -125,6 +125,10 @@ class Motion {
   // there is no consistent state near the one that was set.
   bool fired() const { return !leg_->stepper.fired().empty(); }
   Outcome settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on);
+  // After settle() has failed, goes back to the equations in which the state before the events can be shown.
+  void go_back() {
+    if (before_events_.leg) leg_ = std::move(before_events_.leg), set_modes(before_events_.modes);
+  }
   // Fails if the formula of an event has no value at the start, or the argument of a table lies outside of it there or
   // leaves it.
   Outcome within_bounds(bool forward);
@@ -240,6 +244,11 @@ class Motion {
   Start<W> start_;
   std::vector<W> begun_parameters_;  // the parameters of the last expansion
   std::unique_ptr<Leg> leg_;
+  // If events that could not be applied have set modes: the leg and the parameters before them.
+  struct {
+    std::unique_ptr<Leg> leg;
+    std::vector<W> modes;
+  } before_events_;
   Beside beside_;
   bool stepped_ = false, other_digits_ = false;
   std::optional<MotionPlans> given_;

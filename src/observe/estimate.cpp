@@ -169,9 +169,7 @@ class SharperRun {
     // All rows of a continued run come after its earlier events.
     const bool counted = !run_.since || (forward_ ? motion_.stepper().time() > convert<W>(*run_.since)
                                                   : motion_.stepper().time() < convert<W>(*run_.since));
-    for (; counted && next_ < rows_.size() && run_.knows_resets && resets_before(next_) == resets_ && sets() &&
-           from_now(next_) < within;
-         ++next_)
+    for (; counted && next_ < rows_.size() && is_before_events(next_) && from_now(next_) < within; ++next_)
       if (Outcome o = compare(next_); !o.ok()) return o;
     if (Outcome o = compare_waiting(); !o.ok()) return o;
     const Outcome o = motion_.settle(occurrences, goes_on);
@@ -199,10 +197,17 @@ class SharperRun {
     return {};
   }
 
-  // True if an event of the last step changes the state.
-  bool sets() const {
+  // True if the run has computed a row near the events of the last step before them: no row comes after events that end
+  // the motion.
+  bool is_before_events(std::size_t row) const {
+    if (!run_.knows_resets) return any_fired([](const Event& e) { return e.stop; });
+    return resets_before(row) == resets_ && any_fired([](const Event& e) { return !e.set.empty(); });
+  }
+
+  template <class Is>
+  bool any_fired(const Is& is) const {
     for (const auto& f : motion_.stepper().fired())
-      if (f.series < s_.model->events.size() && !s_.model->events[f.series].set.empty()) return true;
+      if (f.series < s_.model->events.size() && is(s_.model->events[f.series])) return true;
     return false;
   }
 

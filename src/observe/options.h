@@ -25,7 +25,7 @@ struct StepPolynomials {
   std::function<double(std::size_t i, int k)> followed;
   bool one_sided;
   // The value of a followed formula at begin + x, NaN if it has none, and the magnitude of everything that it is made
-  // of.
+  // of, -1 if the motion has no solution there.
   std::function<std::pair<double, double>(std::size_t i, double x)> followed_value;
   // The arguments, at begin + x, of the functions in its formula that may be nearly constant far from their variation.
   std::function<std::vector<HidingArgument>(std::size_t i, double x)> followed_hiding;
@@ -62,6 +62,8 @@ struct SimulationOptions {
   // Formulas that `dense` gets, too: expressions of the scenario without derivatives beyond those solved for. Steps are
   // short enough for their series.
   std::vector<Expr> followed;
+  // Called with the values of these formulas at the last good state of a motion that stops, NaN without a value.
+  std::function<void(const std::function<double(std::size_t i)>& followed)> stopped;
   std::size_t followed_at_ends = 0;  // so many of the last ones are needed at the ends of steps only, and shorten none
   std::function<void(const std::string&)> note;  // called with the notes of the report as soon as there is one
   std::size_t most_steps = 50'000'000;

@@ -8,6 +8,13 @@
 
 namespace anholon {
 
+// True if one of the events that fired ends the motion.
+template <class N>
+bool any_stops(const std::vector<Event>& events, const std::vector<Fired<N>>& fired) {
+  return std::any_of(fired.begin(), fired.end(),
+                     [&](const Fired<N>& f) { return f.series < events.size() && events[f.series].stop; });
+}
+
 template <class W>
 class EventPaces {
  public:
@@ -30,6 +37,18 @@ class EventPaces {
             "events accumulate: '" + e.name + "' fired " + std::to_string(p.times) +
                 " times, sooner and sooner, the last time after " + number_text(to_double(interval), 2),
             "let an event end the motion (stop = true), or change a mode, when what it resets has become small"};
+  }
+
+  // Notes the events that fired in a step from `begin` on. Returns the first outcome that ends the motion.
+  template <class N>
+  Outcome see(const std::vector<Fired<N>>& fired, const W& begin, const W& duration) {
+    Outcome first;
+    for (const Fired<N>& f : fired) {
+      if (f.series >= events_.size()) continue;
+      const Outcome o = see({f.series, begin + convert<W>(f.where), {}, W(0)}, duration);
+      if (first.ok()) first = o;
+    }
+    return first;
   }
 
  private:

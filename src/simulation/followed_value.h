@@ -11,11 +11,11 @@
 namespace anholon {
 
 // Returns the value, NaN if the quadrature of the program has none, and the magnitude of everything that the value is
-// made of. The point is an expansion of the caller.
+// made of, -1 if the motion has no solution at t. The point is an expansion of the caller.
 template <Number N>
 std::pair<double, double> value_of_quadrature(const Stepper<N>& stepper, const Wider<N>& t, std::size_t quadrature,
                                               Expansion<Wider<N>>& point) {
-  if (!stepper.at(t, point).ok()) return {std::numeric_limits<double>::quiet_NaN(), 0};
+  if (!stepper.at(t, point).ok()) return {std::numeric_limits<double>::quiet_NaN(), -1};
   point.evaluate_quadratures();
   std::vector<Wider<N>> sizes;
   point.machine().made_of(sizes);
@@ -42,9 +42,13 @@ class HidingSlots {
         at->second.push_back({*function, hidden_argument(program.tape.code[slot])});
     return at->second;
   }
-  void forget() { known_.clear(); }
+  // Forgets the slots of the program before so many eliminations.
+  void belong_to(std::size_t eliminations) {
+    if (std::exchange(eliminations_, eliminations) != eliminations) known_.clear();
+  }
 
  private:
+  std::size_t eliminations_ = 0;
   std::map<std::size_t, std::vector<HidingSlot>> known_;
 };
 

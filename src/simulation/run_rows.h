@@ -135,7 +135,10 @@ class RunRows {
   // Makes a row by the reference. `judged`: the row counts for the estimate of the error.
   void at(const W& t, const std::string& label, bool judged = true) {
     of_.report.outcome = of_.shown.at(t);
-    if (!of_.report.outcome.ok()) return;
+    if (of_.report.outcome.ok()) of_present_point(t, label, judged);
+  }
+  // Makes a row of the point where the motion is shown.
+  void of_present_point(const W& t, const std::string& label, bool judged = true) {
     last_ = t;
     ++of_.report.rows_looked_at;
     of_.report.outcome = of_.watch.see(of_.shown.point(), of_.report);
@@ -152,6 +155,8 @@ class RunRows {
   // counts for the estimate of the error.
   void after_event(const W& t) { at(t, "", false); }
 
+  // The time of the last row.
+  const std::optional<W>& last() const { return last_; }
   // True if rows were written up to t or beyond it.
   bool has_passed(const W& t) const { return last_ && schedule_.reaches(*last_, t); }
 

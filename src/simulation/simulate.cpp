@@ -8,6 +8,7 @@
 #include "simulation/event_paces.h"
 #include "simulation/first_pull.h"
 #include "simulation/followed_value.h"
+#include "simulation/lost_value.h"
 #include "simulation/run_rows.h"
 #include "simulation/trust.h"
 
@@ -44,6 +45,13 @@ Method method(const SimulationOptions& o) {
              : o.method;
 }
 
+// A formula that ends with t, as T - t = -1, tells no time.
+bool tells_time(const std::string& message) {
+  for (const char* text : {" at t = ", " from t = ", " past t = "})
+    if (message.find(text) != std::string::npos) return true;
+  return false;
+}
+
 Column monitored(const Model& model) {
   Column es;
   for (const Monitor& m : model.monitors) es.push_back(m.value);
@@ -60,7 +68,8 @@ class Run {
         stages_(std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
         course_(s, step_settings(*s.model, o), method(o), quadratures(s, power_, o), stages_), shown_(course_),
         watch_(s, power_, o.conserved, motion().parameters()), angles_(s, doubles(motion().parameters())), judge_(s, o),
-        paces_(s.model->events), rows_({s, o, stages_, course_, shown_, watch_, judge_, floors_, report_}, sink) {
+        paces_(s.model->events), lost_(*s.model),
+        rows_({s, o, stages_, course_, shown_, watch_, judge_, floors_, report_}, sink) {
     if (o.watches_floors) floors_.emplace(s, o.watches_carriers && !o.resume);
     report_.model = s.model->title;
     report_.form = s.system.form->name;
@@ -214,7 +223,7 @@ class Run {
   // Limits the stretch to the steps after which nothing is due.
   void limit_stretch() {
     const bool each = schedule().every_step() || o_.dense || defect_ || watch_.any_redundant() ||
-                      masses_vary<N>(*s_.model, motion().stepper()) || looks_between();
+                      masses_vary<N>(*s_.model, motion().stepper()) || looks_between() || lost_.any();
     stretch_.begin(each, schedule().next());
     if (rows_.watches_ranges()) stretch_.limit(steps_to_next_look(course_.steps()));
     angles_.keep_in(stretch_);
@@ -238,16 +247,19 @@ class Run {
     if (watch_.any_redundant())
       if (report_.outcome = watch_.still_redundant(course_.begun(), report_); !report_.outcome.ok()) return false;
     const MassLimit<W> masses = masses_positive_until<N>(*s_.model, course_);
-    if (o_.dense && course_.by_taylor()) tell_polynomials(masses.t);
-    if (defect_) defect_->step(dense_step(motion().stepper(), masses.t));
+    const auto lost = lost_.in_last_step(course_, first_followed() + o_.followed.size(), masses.t);
+    const W& end = lost.t;
+    if (o_.dense && course_.by_taylor()) tell_polynomials(end);
+    if (defect_) defect_->step(dense_step(motion().stepper(), end));
     if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
-    const bool whole = masses.t == course_.time() && course_.by_taylor();
-    rows_.until(masses.t, whole ? told_until(*s_.model, motion().stepper()) : masses.t);
-    rows_.end_step(masses.t, stretch_.pace.read());
+    const bool whole = end == course_.time() && course_.by_taylor();
+    rows_.until(end, whole ? told_until(*s_.model, motion().stepper()) : end);
+    rows_.end_step(end, stretch_.pace.read());
     look_between();
-    if (report_.outcome.ok() && !(masses.t == course_.time())) {
-      report_.outcome = negative_mass(*s_.model, masses.mass, to_double(masses.t));
-      reached_ = masses.t;
+    if (report_.outcome.ok() && !(end == course_.time())) {
+      report_.outcome = lost.event ? LostValues<N>::outcome(*s_.model, lost)
+                                   : negative_mass(*s_.model, masses.mass, to_double(masses.t));
+      end_.reached = end;
     }
     return !(report_.outcome.ok() && course_.by_taylor() && motion().fired()) || events();
   }
@@ -271,8 +283,7 @@ class Run {
 
   void tell_polynomials(const W& end) {
     const Stepper<N>& stepper = motion().stepper();
-    const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical(),
-                      first = 1 + s_.model->masses.size();
+    const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical(), first = first_followed();
     std::optional<Expansion<W>> point;
     const auto expansion = [&]() -> Expansion<W>& {
       if (!point) point.emplace(motion().program(), motion().parameters(), std::max(1, stages_));
@@ -281,8 +292,7 @@ class Run {
     const auto value = [&](std::size_t i, double x) -> std::pair<double, double> {
       return value_of_quadrature(stepper, W(stepper.before() + W(x)), first + i, expansion());
     };
-    if (const std::size_t times = motion().eliminations(); std::exchange(hiding_since_, times) != times)
-      hiding_.forget();
+    hiding_.belong_to(motion().eliminations());
     const auto hiding = [&](std::size_t i, double x) -> std::vector<HidingArgument> {
       const std::vector<HidingSlot>& slots = hiding_.of(motion().program(), first + i);
       if (slots.empty()) return {};
@@ -297,11 +307,32 @@ class Run {
               stepper.one_sided(), value, hiding});
   }
 
+  // The first of the followed formulas among the quadratures.
+  std::size_t first_followed() const { return 1 + s_.model->masses.size(); }
+
+  // Tells the values of the followed formulas at t, a time of the last step.
+  void tell_last_values(const W& t) {
+    std::optional<Expansion<W>> point;
+    o_.stopped([&](std::size_t i) {
+      if (!point) point.emplace(motion().program(), motion().parameters(), std::max(1, stages_));
+      return value_of_quadrature(motion().stepper(), t, first_followed() + i, *point).first;
+    });
+  }
+
   // Applies the events that fired in the last step; returns false if they end the motion.
   bool events() {
     rows_.settle();
     if (!report_.outcome.ok()) return false;
-    if (Outcome o = motion().at(motion().stepper().time()); o.ok()) watch_.leave(motion().point());
+    const W t = motion().stepper().time();
+    if (motion().at(t).ok()) watch_.leave(motion().point());
+    Start<W> before{t, {}, {}};
+    motion().stepper().foretell(t, before.state, before.leading);
+    const std::vector<Fired<N>> fired = motion().stepper().fired();
+    const Outcome pace = paces_.see(fired, course_.before(), W(schedule().end() - schedule().start()));
+    bool has_row = this->has_row(t);
+    // A row at the time of an event shows the motion before it.
+    if (!has_row && (!pace.ok() || any_stops(s_.model->events, fired))) has_row = true, rows_.at(t, "");
+    if (!report_.outcome.ok()) return false;
     std::vector<Occurrence<W>> occurrences;
     bool goes_on = true;
     report_.outcome = motion().settle(occurrences, goes_on);
@@ -311,19 +342,18 @@ class Run {
       for (const auto& c : o.changes)
         r.changes.push_back({c.name, written().written(c.before), written().written(c.after)});
       report_.events.push_back(std::move(r));
-      const Outcome pace = paces_.see(o, W(schedule().end() - schedule().start()));
-      if (report_.outcome.ok()) report_.outcome = pace;
     }
+    if (report_.outcome.ok()) report_.outcome = pace;
     judge_.events(occurrences);
+    if (!goes_on || !report_.outcome.ok()) end_.reached = t;
     if (!report_.outcome.ok()) {
-      reached_ = motion().stepper().time();
+      end_.before_event.emplace(std::move(before), has_row);
       return false;
     }
     angles_.set_parameters(doubles(motion().parameters()));
     rows_.set_parameters();
-    if (motion().at(motion().stepper().time()).ok()) watch_.enter(motion().point(), motion().parameters());
+    if (motion().at(t).ok()) watch_.enter(motion().point(), motion().parameters());
     show_after(occurrences);
-    if (!goes_on) ended();
     return goes_on && report_.outcome.ok();
   }
 
@@ -334,16 +364,16 @@ class Run {
     if (set && o_.picture && schedule().every_step() && report_.outcome.ok()) rows_.after_event(course_.time());
   }
 
-  // Ends the motion by an event; the state there gets a row of its own.
-  void ended() {
-    const W t = course_.time();
-    reached_ = t;
-    if (!schedule().every_step() && !schedule().took(t)) rows_.at(t, "");
+  // True if a row within the last step is that of its end t; rows in doubles tell times apart as doubles.
+  bool has_row(const W& t) const {
+    if (schedule().every_step() || schedule().took(t)) return true;
+    return o_.precision == Precision::real && rows_.has_passed(course_.before()) && *rows_.last() != course_.before() &&
+           to_double(*rows_.last()) == to_double(t);
   }
 
   // Ends the motion where it cannot be continued.
   void stopped() {
-    if (report_.outcome.message.find(" t = ") == std::string::npos) {
+    if (!tells_time(report_.outcome.message)) {
       report_.outcome.message += " at t = " + number_text(to_double(course_.time()), 12);
       // The user did not ask for an end here.
       const bool stopped_by_itself =
@@ -352,22 +382,40 @@ class Run {
           report_.outcome.kind == OutcomeKind::no_convergence || report_.outcome.kind == OutcomeKind::not_a_number ||
           stopped_by_itself)
         explain_stop(s_, motion(), report_.outcome);
-    } else if (report_.outcome.kind != OutcomeKind::singular) {
-      return;  // its end has a row already
     }
-    // The last good state gets a row of its own: the state reached, or that before if the motion cannot go on from
-    // there.
-    const W last = report_.outcome.kind == OutcomeKind::interrupted ? course_.time() : course_.before();
-    if (course_.steps() > 0 && !schedule().every_step() && !rows_.has_passed(last)) {
-      const Outcome why = report_.outcome;
-      report_.outcome = {};
-      rows_.at(last, "");
-      // So near to a singular J, the equations cannot be solved to all digits. The series hold as far back as forward,
-      // so the row is made at the mirrored time.
-      if (!report_.outcome.ok() && course_.by_taylor())
-        report_.outcome = {}, rows_.at(course_.before() - (course_.time() - course_.before()), "");
-      report_.outcome = why;
-    }
+    if (course_.steps() == 0) return;
+    const Outcome why = std::exchange(report_.outcome, {});
+    if (end_.before_event)
+      row_before_event();
+    else if (const std::optional<W> last = last_good_state(why);
+             last && o_.stopped && !o_.followed.empty() && course_.by_taylor())
+      tell_last_values(*last);
+    report_.outcome = why;
+  }
+
+  // Events that could not be applied leave the state before them as the last good one.
+  void row_before_event() {
+    const auto& [state, has_row] = *end_.before_event;
+    motion().go_back();
+    if (!has_row && motion().settle_at(state).ok()) rows_.of_present_point(state.t, "");
+  }
+
+  // Gives the last good state a row of its own, unless it has one: the end of the motion, the state reached, or that
+  // before if the motion cannot go on from there. Returns the time of this row.
+  std::optional<W> last_good_state(const Outcome& why) {
+    const W before = course_.before(), last = end_.reached                           ? *end_.reached
+                                              : why.kind == OutcomeKind::interrupted ? course_.time()
+                                                                                     : before;
+    if (schedule().every_step() || rows_.has_passed(last)) return rows_.last();
+    rows_.at(last, "");
+    if (report_.outcome.ok()) return last;
+    if (!course_.by_taylor()) return std::nullopt;
+    // So near to a singular J, the equations cannot be solved to all digits. The series hold as far back as forward, so
+    // the row is made at the mirrored time.
+    report_.outcome = {};
+    const W mirrored = before - (course_.time() - before);
+    rows_.at(mirrored, "");
+    return report_.outcome.ok() ? std::optional(mirrored) : std::nullopt;
   }
 
   // The rows may be using the watch beside the motion, so the watch gets the work only here.
@@ -378,7 +426,7 @@ class Run {
   void report() {
     report_.order = course_.order();
     report_.method = course_.report();
-    report_.t = to_double(reached_ ? *reached_ : course_.time());
+    report_.t = to_double(end_.reached ? *end_.reached : course_.time());
     report_.steps = course_.steps();
     report_.constraints = to_double(course_.worst_constraint());
     report_.smallest_sigma = to_double(course_.smallest_sigma());
@@ -451,14 +499,19 @@ class Run {
   AngleWatch angles_;
   Judge<N> judge_;
   std::optional<FloorWatch> floors_;
-  HidingSlots hiding_;  // of the followed formulas, in the program since `hiding_since_` eliminations
-  std::size_t hiding_since_ = 0;
+  HidingSlots hiding_;     // of the followed formulas
   std::size_t looks_ = 0;  // looks between rows
   EventPaces<W> paces_;
+  LostValues<N> lost_;
   PacedStretch<W> stretch_;
   std::optional<Defect> defect_;
-  std::optional<W> reached_;  // the time at which the motion ended before its end
-  W work_{0};                 // the greatest work so far at the start of a step
+  // The end of a motion before its requested end: its time, and if events could not be applied, the state before them
+  // and whether it has a row.
+  struct {
+    std::optional<W> reached;
+    std::optional<std::pair<Start<W>, bool>> before_event;
+  } end_;
+  W work_{0};  // the greatest work so far at the start of a step
   SimulationReport report_;
   SimulationPlans plans_;  // the plans of the motion are in the motion
   RunRows<N> rows_;        // the last member, because it uses the others

@@ -90,7 +90,12 @@ CaseParameters::CaseParameters(Workspace& s, const EnsembleOptions& o)
   std::vector<std::size_t> indices;
   for (const Varied& v : varied)
     if (v.kind == Varied::Kind::parameter) indices.push_back(v.index);
-  if (const Column exponents = exponents_of(*own, indices); !exponents.empty()) exponents_ = compile(exponents);
+  Column exponents = exponents_of(*own, indices);
+  Column formulas;
+  for (const Column* reduced : {&o.reductions.formulas, &o.reductions.ends})
+    for (const Expr e : *reduced) formulas.push_back(own->graph->own(e));
+  for (const Expr e : exponents_of(*own, formulas, indices)) exponents.push_back(e);
+  if (!exponents.empty()) exponents_ = compile(exponents);
   whole_ = implicit_system(s.model, *s.mechanics, *s.system.form, s.independent, s.elimination);
   goes_beyond_ = may_go_beyond(whole_, s.structure);
   equations_ = compile(whole_.equations);

@@ -157,8 +157,8 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   Reducer reducer(o.reductions, o.tolerance.get_d());
   const std::size_t ends = o.reductions.ends.size(), formulas = o.reductions.formulas.size();
   if (formulas + ends > 0) {
-    options.followed = formulas_in(own, o.reductions.formulas, o);
-    const Column of_ends = formulas_in(own, o.reductions.ends, o);
+    options.followed = formulas_in(own, o.reductions.formulas, o, {});
+    const Column of_ends = formulas_in(own, o.reductions.ends, o, {});
     options.followed.insert(options.followed.end(), of_ends.begin(), of_ends.end());
     options.followed_at_ends = ends;
     options.dense = [&, ends, formulas](const StepPolynomials& step) {
@@ -171,6 +171,11 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
       std::vector<double> values;
       for (std::size_t i = 0; i < ends; ++i)
         values.push_back(step.followed_value(formulas + i, step.end - step.begin).first);
+      reducer.ends(std::move(values));
+    };
+    options.stopped = [&, ends, formulas](const std::function<double(std::size_t)>& followed) {
+      std::vector<double> values;
+      for (std::size_t i = 0; i < ends; ++i) values.push_back(followed(formulas + i));
       reducer.ends(std::move(values));
     };
   }
@@ -187,7 +192,8 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   if (moved && !o.reductions.list.empty()) reducer.values(r.reduced);
   r.outcome = report.outcome;
   r.steps = report.steps;
-  r.t = report.t;
+  // The time of a motion that stops is that of its last good state.
+  if (r.outcome.ok() || r.last.empty()) r.t = report.t;
 }
 
 void CaseWorker::by_simulation(const EnsembleCase& numbers, CaseResult& r) {

@@ -6,6 +6,7 @@
 #include "motion/representation.h"
 #include "observe/watch.h"
 #include "setup/output_tape.h"
+#include "simulation/lost_value.h"
 
 namespace anholon {
 
@@ -22,7 +23,8 @@ void EnsemblePlan::make() {
   const Graph& g = *model.graph;
   settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
   plain = (o.method == Method::automatic || o.method == Method::taylor) && !s.routh && s.redundant.empty() &&
-          s.elimination.pivots().empty() && !o.own_motion && !o.each_anew && model.bounds.empty();
+          s.elimination.pivots().empty() && !o.own_motion && !o.each_anew && model.bounds.empty() &&
+          events_with_logarithms(model).empty();
   if (!plain) return;
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
   for (std::size_t j = 0; j < s.system.size(); ++j)
@@ -30,7 +32,8 @@ void EnsemblePlan::make() {
   Column quadratures;
   for (const VaryingMass& m : model.masses) quadratures.push_back(m.value);
   reduced.first = quadratures.size();
-  for (const Expr e : formulas_in(s, o.reductions.formulas, o)) quadratures.push_back(e);
+  const Column formulas = formulas_in(s, o.reductions.formulas, o, varied_parameters(o));
+  quadratures.insert(quadratures.end(), formulas.begin(), formulas.end());
   settings.known_from = 0, settings.known_to = reduced.first, settings.followed_to = quadratures.size();
   for (std::size_t i = 0; i < o.reductions.formulas.size(); ++i) {
     std::vector<Reduced::Function>& functions = reduced.functions.emplace_back();
@@ -64,7 +67,8 @@ void EnsemblePlan::make() {
   }
   Column monitors;
   for (const Monitor& m : model.monitors) monitors.push_back(m.value);
-  for (const Expr e : formulas_in(s, o.reductions.ends, o)) monitors.push_back(e);
+  const Column ends = formulas_in(s, o.reductions.ends, o, varied_parameters(o));
+  monitors.insert(monitors.end(), ends.begin(), ends.end());
   highest = largest_order(s, s.structure.d);
   stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitors));
   leading = stages > 0 || std::any_of(s.structure.d.begin(),

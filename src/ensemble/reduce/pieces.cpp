@@ -124,6 +124,7 @@ Interpolation::Interpolation(const std::function<FormulaValue(double)>& f, doubl
     const FormulaValue v = f(from + (to - from) * (1 - cosines()[1][static_cast<std::size_t>(j)]) / 2);
     values_[static_cast<std::size_t>(j)] = v.value;
     if (!std::isfinite(v.value)) ++without_value_;
+    if (v.beyond_motion()) ++beyond_motion_;
     size_ = std::max(size_, std::abs(v.value));
     noise_ = std::max(noise_, kNoise * std::numeric_limits<double>::epsilon() * v.made_of);
   }

@@ -11,9 +11,11 @@ namespace anholon {
 // greater. All points where the derivative changes its sign are considered.
 double greatest_on(const double* c, int degree, double h, double known);
 
-// The value of a formula at a moment, NaN if it has none; and the magnitude of everything that the value is made of.
+// The value of a formula at a moment, NaN if it has none; and the magnitude of everything that the value is made of, -1
+// if the motion has no solution at this moment.
 struct FormulaValue {
   double value = std::numeric_limits<double>::quiet_NaN(), made_of = 0;
+  bool beyond_motion() const { return made_of < 0; }
 };
 
 // Chebyshev's interpolation of a formula on [from, to], at points inside.
@@ -23,8 +25,10 @@ class Interpolation {
 
   Interpolation(const std::function<FormulaValue(double)>& f, double from, double to);
   const std::array<double, kPoints>& values() const { return values_; }
-  int without_value() const { return without_value_; }  // the number of points
-  double size() const { return size_; }                 // the greatest magnitude of a value
+  // The numbers of points without a value, and of those where the motion has no solution.
+  int without_value() const { return without_value_; }
+  int beyond_motion() const { return beyond_motion_; }
+  double size() const { return size_; }  // the greatest magnitude of a value
   double mean() const { return terms_[0]; }
   // True if the last terms are below the allowed error, or below the round-off of the values.
   bool good(double allowed) const;
@@ -34,7 +38,7 @@ class Interpolation {
  private:
   std::array<double, kPoints> values_{}, terms_{};
   double noise_ = 0, size_ = 0;
-  int without_value_ = 0;
+  int without_value_ = 0, beyond_motion_ = 0;
 };
 
 }  // namespace anholon

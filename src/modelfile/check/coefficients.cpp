@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "model/exponents.h"
 #include "numeric/number.h"
 #include "tape/tape.h"
 
@@ -12,7 +13,7 @@ std::vector<Diagnostic> wrong_coefficients(const std::vector<Contact>& contacts,
   Column values;
   for (const Parameter& p : model.parameters) values.push_back(p.value);
   const auto value_of = [&](const Expr& e) {
-    values.push_back(model.graph->own(e));
+    values.push_back(with_whole_exponents(model, {model.graph->own(e)}, {}).front());
     const double value = evaluate_parameters<double>(*model.graph, values).back();
     values.pop_back();
     return value;
