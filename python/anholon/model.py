@@ -149,7 +149,8 @@ class Model(Analysed):
             initial: values instead of those of the file: ``{"theta": 1.3, "phi'": 6}``, in SI units; ``{"t": 1}`` is the time at
                 which the motion starts. The initial value of a state of the model is the value of a parameter, which :meth:`with_`
                 sets.
-            tolerance: the relative tolerance of each step; that of the file if it is None, and 1e-12 if the file has none.
+            tolerance: the tolerance of each step, relative to the largest unknown of its dimension, at least to 1 in SI units; that
+                of the file if it is None, and 1e-12 if the file has none.
             form: the form of the equations; ``auto`` is the form whose motion takes the fewest operations.
             eliminate: coordinates that forms without multipliers eliminate; the program chooses them if there are none.
             method: ``auto``, ``taylor``, ``rk`` or ``bdf``.
@@ -302,7 +303,7 @@ class Model(Analysed):
                 table, for example a DataFrame.
             draw: ``"random"``, or ``"sobol"`` for the points of a Sobol sequence, which are distributed more evenly.
             seed: the seed of the draws, which depend on the seed and on the number of the case only.
-            tolerance: the relative tolerance of each step.
+            tolerance: the tolerance of each step, as in :meth:`simulate`.
             initial: values common to all cases.
             form: the form of the equations.
             threads: the number of threads; 0 takes as many as the machine has. The results do not depend on it.

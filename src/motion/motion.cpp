@@ -215,7 +215,7 @@ Outcome Motion<N>::at(const W& t) {
 // Watches the pivots on which the choices of a leg depend.
 template <Number N>
 void Motion<N>::watch_pivots(Leg& leg) const {
-  const bool rows = base_ && chooses_rows(s_, settings_);
+  const bool rows = base_ && chooses_rows(s_, settings_) && !leg.system.constraints.empty();
   if (!rows && leg.elimination.pivots().empty()) return;
   const std::vector<std::size_t> all;
   leg.pivots = std::make_unique<ChoiceWatch<W>>(workspace(leg), leg.elimination, rows ? leg.system.constraints : all,

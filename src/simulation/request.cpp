@@ -53,6 +53,9 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
       std::erase_if(at, [&](const WrittenTime& t) { return !lies_between(t.value, start, *o.to); }) > 0;
   if (left_out)
     asker.note("rows that the file asks for beyond t = " + number_text(from_rational<double>(*o.to)) + " are left out");
+  // The start is written with the digits of a double.
+  for (WrittenTime& t : at)
+    if (t.value != start && from_rational<double>(t.value) == from_rational<double>(start)) t.value = start;
   for (const WrittenTime& t : at) o.at.push_back(t.value);
   if (!of_file(at))
     for (const WrittenTime& t : at) o.at_text.push_back(is_number_as_written(t.text) ? t.text : "");

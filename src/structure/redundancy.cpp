@@ -19,10 +19,13 @@ constexpr double kFarFromDependent = 0.5, kNearlyDependent = 0.05;
 // different constraints are not parallel by accident.
 double generic(const Node& symbol) { return 0.5 + generic_value(symbol, 0); }
 
+// Squares of the entries may be beyond double.
 double length(const std::vector<double>& v) {
-  double sum = 0;
-  for (double x : v) sum += x * x;
-  return std::sqrt(sum);
+  double largest = 0, sum = 0;
+  for (const double x : v) largest = std::max(largest, std::abs(x));
+  if (!(largest > 0)) return 0;
+  for (const double x : v) sum += (x / largest) * (x / largest);
+  return largest * std::sqrt(sum);
 }
 
 // An orthonormal basis that grows.

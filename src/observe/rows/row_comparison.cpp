@@ -67,6 +67,17 @@ void RowComparison::lose(double t) {
   rows_.push_back({t, std::vector<double>(columns_.size(), kAll), {}, {}});
 }
 
+// True if the numbers of a kind are small from the start on, not zero up to round-off: both runs begin with them.
+bool RowComparison::begins_small(ColumnKind kind) const {
+  if (rows_.empty() || !of_motion(kind)) return false;
+  const Row& first = rows_.front();
+  for (std::size_t j = 0; j < columns_.size(); ++j)
+    if (columns_[j].kind == kind && first.magnitudes[j] > 0 &&
+        first.differences[j] < kHardlyKnown * first.magnitudes[j])
+      return true;
+  return false;
+}
+
 // The measures of the columns' differences.
 std::vector<double> RowComparison::scales() const {
   const std::size_t n = columns_.size();
@@ -85,7 +96,7 @@ std::vector<double> RowComparison::scales() const {
     const double like = monitor ? terms_[j] : greatest[columns_[j].kind],
                  noise = kNoise * roundoff_ * std::max(1.0, like);
     if (most_[j] <= noise && difference[j] <= noise)
-      scales[j] = std::max(1.0, like);
+      scales[j] = like > 0 && like <= noise && begins_small(columns_[j].kind) ? like : std::max(1.0, like);
     else if (difference[j] >= kHardlyKnown * most_[j] && difference[j] <= kLikeOthers * others * like)
       scales[j] = like;
   }

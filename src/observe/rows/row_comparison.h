@@ -6,7 +6,8 @@
 // the error of a kind of columns is the largest of its columns. A column that is zero up to round-off has no magnitude
 // of its own: if its difference is at most what the other columns' relative errors make of the greatest column of its
 // kind (of a monitor: of the terms it is the sum of), or at most what round-off makes of 1, the difference is relative
-// to that magnitude (theory: integrals).
+// to that magnitude (theory: integrals). If a motion begins with coordinates, velocities or states that are all smaller
+// than round-off of 1, their differences are relative to the greatest of them.
 #pragma once
 #include <limits>
 #include <span>
@@ -61,6 +62,7 @@ class RowComparison {
 
  private:
   std::vector<double> scales() const;
+  bool begins_small(ColumnKind kind) const;
 
   std::vector<RunColumn> columns_;
   double roundoff_, tolerance_;
