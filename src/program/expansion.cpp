@@ -132,7 +132,7 @@ template <Number N>
 Outcome Expansion<N>::singular() const {
   const System& s = *program_->system;
   const std::size_t n = s.coordinates, constraints = s.constraints.size();
-  constexpr double kLost = 1e-10;
+  constexpr double kLost = 1e-10, kTiny = 1e-9;
   const Matrix<N> j = jacobian_.matrix();
   Matrix<N> phi(constraints, n);
   for (std::size_t i = 0; i < constraints; ++i)
@@ -151,17 +151,20 @@ Outcome Expansion<N>::singular() const {
   const RowChoice<N> all = choose_rows(j, N(kLost));
   std::vector<bool> used(s.size(), false);
   for (std::size_t column : all.pivot_columns) used[column] = true;
-  std::string names;
-  for (std::size_t k = 0; k < s.size(); ++k)
-    if (!used[k])
-      names += (names.empty() ? "" : ", ") +
-               derivative_name(s.variable_names[k], static_cast<unsigned>(program_->d[k]), Format::text);
+  std::string names, hint = "no inertia acts in some direction, a constraint has lost its hold, or angles are at their "
+                            "singularity (Euler angles at theta = 0)";
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    if (used[k]) continue;
+    names += (names.empty() ? "" : ", ") +
+             derivative_name(s.variable_names[k], static_cast<unsigned>(program_->d[k]), Format::text);
+    if (const double largest = to_double(jacobian_.largest(k)); k >= n && k < n + constraints && largest < kTiny)
+      hint = "the coefficients of the constraint '" + s.equation_names[k] + "' are at most " + number_text(largest, 2) +
+             " here: multiply the constraint by a number that brings them near 1, or start where they do not vanish";
+  }
   return {OutcomeKind::singular,
           "singular configuration: the equations do not determine " +
               (names.empty() ? std::string("the accelerations") : names),
-          "no inertia acts in some direction, a constraint has lost its hold, or angles are at their singularity "
-          "(Euler angles "
-          "at theta = 0)"};
+          hint};
 }
 
 // Returns the size of the terms of equation i at derivative order c_i - level, including those that result from the
