@@ -78,11 +78,12 @@ def whole(name: str, number: object, least: int, most: int = 2**63 - 1) -> int:
     """
     if isinstance(number, bool) or not isinstance(number, numbers.Integral):
         raise TypeError(f"{name} is a whole number, not {number!r:.60}")
-    if number < least:
-        raise ValueError(f"{name} is {least} or more, not {int(number)}")
-    if number > most:
-        raise ValueError(f"{name} is {most} or less, not {int(number)}")
-    return int(number)
+    value = int(number)
+    if value < least:
+        raise ValueError(f"{name} is {least} or more, not {value}")
+    if value > most:
+        raise ValueError(f"{name} is {most} or less, not {value}")
+    return value
 
 
 def float_of(text: str | None) -> float | None:
