@@ -12,6 +12,8 @@ namespace {
 constexpr double kHardlyKnown = 0.1;
 // Differences up to kNoise round-offs, and up to kLikeOthers times the error of other columns, are noise.
 constexpr double kNoise = 64, kLikeOthers = 10;
+// Numbers of two runs are the same if their relative difference is at most this.
+constexpr double kSame = 0x1p-50;
 
 double number(double x) { return std::isnan(x) ? std::numeric_limits<double>::infinity() : x; }
 
@@ -67,13 +69,14 @@ void RowComparison::lose(double t) {
   rows_.push_back({t, std::vector<double>(columns_.size(), kAll), {}, {}});
 }
 
-// True if the numbers of a kind are small from the start on, not zero up to round-off: both runs begin with them.
+// True if the numbers of a kind are small from the start on, not zero up to round-off: both runs begin with the same
+// numbers.
 bool RowComparison::begins_small(ColumnKind kind) const {
   if (rows_.empty() || !of_motion(kind)) return false;
   const Row& first = rows_.front();
   for (std::size_t j = 0; j < columns_.size(); ++j)
     if (columns_[j].kind == kind && first.magnitudes[j] > 0 &&
-        first.differences[j] < kHardlyKnown * first.magnitudes[j])
+        first.differences[j] <= kSame * first.magnitudes[j])
       return true;
   return false;
 }
