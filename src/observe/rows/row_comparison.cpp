@@ -75,8 +75,7 @@ bool RowComparison::begins_small(ColumnKind kind) const {
   if (rows_.empty() || !of_motion(kind)) return false;
   const Row& first = rows_.front();
   for (std::size_t j = 0; j < columns_.size(); ++j)
-    if (columns_[j].kind == kind && first.magnitudes[j] > 0 &&
-        first.differences[j] <= kSame * first.magnitudes[j])
+    if (columns_[j].kind == kind && first.magnitudes[j] > 0 && first.differences[j] <= kSame * first.magnitudes[j])
       return true;
   return false;
 }
