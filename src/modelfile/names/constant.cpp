@@ -1,6 +1,9 @@
 #include "modelfile/names/constant.h"
 
+#include <algorithm>
+
 #include "formula/formula.h"
+#include "formula/functions.h"
 #include "numeric/multi.h"
 #include "tape/tape.h"
 
@@ -48,7 +51,30 @@ Dimension dimension_of_sum(const Syntax& s) {
   return first;
 }
 
-// Returns the dimension of an expression of numbers with and without units. Functions have none.
+Dimension power_of(Dimension d, const Rational& exponent) {
+  for (Rational& k : d) k *= exponent;
+  return d;
+}
+
+Dimension dimension_of_call(const Syntax& s) {
+  const auto row = std::find_if(function_table().begin(), function_table().end(),
+                                [&](const FunctionRow& r) { return r.name == s.text; });
+  if (row == function_table().end() || s.args.empty()) return {};
+  switch (row->dimension) {
+  case DimensionRule::same:
+  case DimensionRule::alike:
+    return dimension_of(s.args[0]);
+  case DimensionRule::root:
+    return power_of(dimension_of(s.args[0]), {1, 2});
+  case DimensionRule::choice:
+  case DimensionRule::cases:
+    return dimension_of(s.args.back());
+  default:
+    return {};  // other functions of numbers are pure numbers
+  }
+}
+
+// Returns the dimension of an expression of numbers with and without units.
 Dimension dimension_of(const Syntax& s) {
   using Op = Syntax::Op;
   if (s.op == Op::quantity) {
@@ -58,12 +84,11 @@ Dimension dimension_of(const Syntax& s) {
   if (s.op == Op::negate) return dimension_of(s.args[0]);
   if (s.op == Op::multiply) return dimension_of_product(s);
   if (s.op == Op::add) return dimension_of_sum(s);
+  if (s.op == Op::call) return dimension_of_call(s);
   if (s.op != Op::power) return {};
   Constants names;
   const Expr exponent = evaluate_number(s.args[1], names);
-  Dimension d = dimension_of(s.args[0]);
-  for (Rational& k : d) k *= is_number(exponent) ? number_value(exponent) : Rational(0);
-  return d;
+  return power_of(dimension_of(s.args[0]), is_number(exponent) ? number_value(exponent) : Rational(0));
 }
 
 }  // namespace
