@@ -10,13 +10,16 @@ namespace {
 
 constexpr std::size_t kBlocks = 4;      // one is filled, the others wait or are written
 constexpr int kBlocksOfSmallFiles = 8;  // a file with fewer needs no thread
-constexpr std::size_t kRoom = 1u << 16;
+constexpr std::size_t kRoom = 1u << 18;
 
 }  // namespace
 
 BlockFile::BlockFile(const std::string& path)
     : file_(path), failed_(!file_.error().empty()),
-      blocks_(std::vector<Block>(kBlocks), [this](Block& block) { write(block); }) {}
+      blocks_(std::vector<Block>(kBlocks), [this](Block& block) { write(block); }) {
+  // A block goes to the system by one call, without a copy in the buffer of the stream.
+  if (!file_.part().empty()) std::setvbuf(file_.stream(), nullptr, _IONBF, 0);
+}
 
 bool BlockFile::is_terminal() const { return file_.stream() && ::isatty(::fileno(file_.stream())); }
 

@@ -178,7 +178,7 @@ bool write_table(std::FILE* file, const RunTable& table) {
 RunFile read_csv(std::string_view text) { return CsvReader(text).read(); }
 
 // Lines that are written together.
-static constexpr std::size_t kTogether = 1u << 16;
+static constexpr std::size_t kTogether = 1u << 18;
 
 void CsvLines::header(const std::vector<std::string>& names) {
   if (!file_.open()) return;

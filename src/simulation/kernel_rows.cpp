@@ -1,5 +1,6 @@
 #include "simulation/kernel_rows.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 
@@ -14,10 +15,19 @@ bool looked_at(std::size_t row) {
   return row % std::bit_ceil(row / kFirst + 1) == 0;
 }
 
-// The rows in a block, the number of blocks, and the number of rows from which a second thread pays.
-constexpr std::size_t kTogether = 256, kBlocks = 8, kFew = 512;
+// The rows in a block, and the number of rows from which a second thread pays.
+constexpr std::size_t kTogether = 256, kFew = 512;
 // The steps without rows that are passed on together.
 constexpr std::size_t kSteps = 4096;
+
+// Returns the number of blocks under way for states of `numbers` numbers. At first the rows are slower than the motion,
+// because the reference checks many of them, and later the motion is slower; so the motion runs ahead, as far as the
+// memory for waiting rows allows.
+std::size_t blocks_of(std::size_t numbers) {
+  constexpr std::size_t kMemory = std::size_t{8} << 20, kFewest = 8, kMost = 64;
+  const std::size_t row = sizeof(WaitingBlock::Waiting) + 2 * numbers * sizeof(long double);
+  return std::clamp(kMemory / (kTogether * row), kFewest, kMost);
+}
 
 // Returns the sizes whose round-off each number of the state has: its own size, and that of its change in the time t at
 // its present rate, because the time of a row is rounded. A velocity that passes zero has an error of the second kind.
@@ -40,7 +50,7 @@ KernelRows::KernelRows(Workspace& s, const SimulationOptions& o, const Motion<do
     : s_(s), o_(o), takers_(takers), waiting_(std::move(waiting)), stages_(stages), program_(motion.program()),
       point_(program_, motion.parameters(), std::max(1, stages)),
       check_(columns_after_time(s, largest_order(s, program_.d))),
-      work_(std::vector<Block>(kBlocks, Block(kTogether)), [this](Block& block) { work(block); }) {
+      work_(std::vector<Block>(blocks_of(point_.state_size()), Block(kTogether)), [this](Block& block) { work(block); }) {
   program_.system = &s.system;
 }
 
