@@ -5,7 +5,7 @@
 
 #include "anholon/version.h"
 #include "api/data.h"
-#include "contact/chosen_mode.h"
+#include "contact/mode/chosen_mode.h"
 #include "modelfile/text/shipped.h"
 
 namespace anholon::v1 {

@@ -2,6 +2,7 @@
 
 #include "api/data.h"
 #include "motion/form_choice.h"
+#include "motion/start.h"
 
 namespace anholon::v1 {
 
@@ -36,15 +37,16 @@ Model System::model() const { return Model(data_->model); }
 
 std::vector<InitialValue> System::initial() const {
   const inner::Scenario& s = data_->scenario;
+  const inner::InitialState<double> x = inner::start_as_in_rows(s);
   std::vector<InitialValue> list;
   const auto add = [&](const std::string& name, double value, inner::Origin origin) {
     list.push_back({name, value, static_cast<Origin>(origin)});
   };
   const std::vector<inner::Coordinate>& q = s.model->coordinates;
-  for (std::size_t a = 0; a < s.state.q.size(); ++a) add(q[a].name, s.state.q[a], s.state.q_origin[a]);
-  for (std::size_t a = 0; a < s.state.qd.size(); ++a) add(q[a].name + "'", s.state.qd[a], s.state.qd_origin[a]);
-  for (std::size_t z = 0; z < s.state.states.size(); ++z)
-    add(s.model->states[z].name, s.state.states[z], s.state.states_origin[z]);
+  for (std::size_t a = 0; a < x.q.size(); ++a) add(q[a].name, x.q[a], x.q_origin[a]);
+  for (std::size_t a = 0; a < x.qd.size(); ++a) add(q[a].name + "'", x.qd[a], x.qd_origin[a]);
+  for (std::size_t z = 0; z < x.states.size(); ++z)
+    add(s.model->states[z].name, x.states[z], x.states_origin[z]);
   return list;
 }
 

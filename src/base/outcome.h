@@ -2,6 +2,7 @@
 // contains the remedy.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "base/diagnostic.h"
@@ -23,9 +24,10 @@ enum class OutcomeKind : std::uint8_t {
 
 struct Outcome {
   OutcomeKind kind = OutcomeKind::finished;
-  std::string message;  // what happened, where
-  std::string hint;     // what to do
-  Span place = {};      // the element of the model that caused the outcome; line 0 if there is none
+  std::string message;           // what happened, where
+  std::string hint;              // what to do
+  Span place = {};               // the element of the model that caused the outcome; line 0 if there is none
+  std::optional<double> t = {};  // the time that the message tells
   bool ok() const { return kind == OutcomeKind::finished; }
 };
 

@@ -1,6 +1,6 @@
 #include "cli/contacts.h"
 
-#include "contact/chosen_mode.h"
+#include "contact/mode/chosen_mode.h"
 #include "modelfile/contacts.h"
 
 namespace anholon::cli {

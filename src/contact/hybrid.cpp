@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/contact_faults.h"
 #include "contact/law/accumulation.h"
 #include "contact/law/consistent_modes.h"
 #include "contact/law/impact.h"
@@ -13,12 +14,10 @@
 #include "contact/refused_options.h"
 #include "contact/slip_start.h"
 #include "contact/surface/contact_exponents.h"
-#include "contact/surface/gap_roots.h"
 #include "contact/switched_motion.h"
 #include "integrate/step_control.h"
 #include "modelfile/check/coefficients.h"
-#include "numeric/number.h"
-#include "observe/angles.h"
+#include "numeric/told_time.h"
 #include "observe/floors/supports.h"
 
 namespace anholon {
@@ -28,8 +27,9 @@ namespace {
 class HybridMotion {
  public:
   HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
-      : s_(s), contacts_(with_borders(s, contacts)), bodies_(s, contacts_, start_of(s, o)), roots_(s, contacts_),
-        joined_(*s.model, contacts), accumulation_(contacts.size()), impact_states_(s, contacts_), o_(o) {
+      : s_(s), contacts_(with_borders(s, contacts)), bodies_(s, contacts_, start_of(s, o)),
+        faults_(s, contacts_, bodies_), joined_(*s.model, contacts), accumulation_(contacts.size()),
+        impact_states_(s, contacts_), o_(o) {
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
     if (end_ < bodies_.at.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
     std::vector<Rational> times = times_of_rows(o, bodies_.at.t, end_);
@@ -47,32 +47,33 @@ class HybridMotion {
                             bodies_.at.t.get_d(), 0);
     if (Outcome o = all_pass_zero(*s_.model, bodies_.contacts); !o.ok())
       return joined_.report(std::move(o), bodies_.at.t.get_d(), 0);
-    Outcome outcome = not_inside(" at the start", {}, true);
+    Outcome outcome = faults_.inside_at_start();
     constexpr std::size_t kMostSegments = 100'000;
     for (std::size_t k = 0; outcome.ok() && bodies_.at.t < end_; ++k) {
       if (k == kMostSegments)
-        outcome = {OutcomeKind::interrupted, "more than 100000 changes of the contacts" + when(),
-                   "end the motion earlier"};
+        outcome = told({OutcomeKind::interrupted, "more than 100000 changes of the contacts" + at_time(now()),
+                        "end the motion earlier"},
+                       now());
       else
-        name_angles(outcome = choose());
+        faults_.name_angles(outcome = choose());
       if (outcome.ok() && slips_->waits()) {
         if (!slips_->wait(outcome)) break;
         continue;
       }
       if (outcome.ok() && !segments_->follow(end_, outcome)) {
-        explain(outcome);
+        faults_.explain(outcome);
         break;
       }
       take_back_touches();
       if (outcome.ok() && !slips_->hold(outcome)) break;
-      if (outcome.ok()) outcome = not_inside(when(), kPassed);
+      if (outcome.ok()) outcome = faults_.inside();
     }
-    if (outcome.ok()) outcome = not_inside(when(), kPassed);
+    if (outcome.ok()) outcome = faults_.inside();
     bodies_.look();
-    if (outcome.ok()) outcome = as_its_modes();
+    if (outcome.ok()) outcome = faults_.not_as_its_mode();
     if (outcome.ok()) name_last_slips();
     if (!outcome.ok())
-      if (Outcome flat = not_flat(kNearlyFlat); !flat.ok()) outcome = flat;
+      if (Outcome flat = faults_.lies_flat(true); !flat.ok()) outcome = flat;
     if (bodies_.at.t < end_) segments_->end_early();
     return joined_.report(std::move(outcome), bodies_.at.t.get_d(), segments_->rows());
   }
@@ -82,82 +83,18 @@ class HybridMotion {
   static constexpr long double kRest = 1e-12L;
   // The most impacts at one instant; further ones follow after a segment.
   static constexpr std::size_t kMostImpacts = 16;
-  // A disc lies flat if the sine of its tilt has fallen to the part kFlat; if the motion fails, also at kNearlyFlat.
-  static constexpr long double kFlat = 1e-5L, kNearlyFlat = 1e-4L;
-  static constexpr const char* kPassed =
-      "the contact is deeper than the round-off of its event: take a smaller --tolerance, or end the motion before";
-  static constexpr const char* kJumped = "a jump of a surface has no velocity with which it strikes: let the surface "
-                                         "move there within a short time, or write "
-                                         "a contact for each of its parts";
   static ContactState start_of(const Workspace& s, const SimulationOptions& o) {
     return {o.state.t ? *o.state.t : Rational(s.state.t), s.state.q, s.state.qd, s.state.states};
   }
   std::string event_name(std::size_t c, ModeChange change) const {
     return bodies_.contacts[c].name + "." + word(bodies_.contacts[c], change);
   }
-  std::string when() const { return " at t = " + number_text(bodies_.at.t.get_d(), 12); }
-
-  // Fails if a gap is negative.
-  Outcome not_inside(const std::string& where, const std::string& hint, bool at_start = false) {
-    bodies_.dynamics.go(bodies_.at);
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
-      if (bodies_.dynamics.place(c).gap < 0 &&
-          !(at_start ? bodies_.near.negligible_at_start(c) : bodies_.near.negligible(c)))
-        return {OutcomeKind::inconsistent,
-                "the gap of contact '" + bodies_.contacts[c].name + "' is " +
-                    number_text(static_cast<double>(bodies_.dynamics.place(c).gap), 6) +
-                    (bodies_.contacts[c].units.gap.empty() ? "" : " " + bodies_.contacts[c].units.gap) + where +
-                    ", and a gap is not negative",
-                at_start ? how_to_start(bodies_.contacts[c]) : hint, bodies_.contacts[c].span};
-    return {};
-  }
-
-  // The hint for a gap that is negative at the start.
-  static std::string how_to_start(const Contact& contact) {
-    const std::string start = "start where the gap is zero or positive, by [initial] or --q";
-    return start + (contact.shape.empty()
-                        ? ", or change the sign of the gap: it is positive while the contact is open"
-                        : ", or tell where the plane, ball or bowl is by 'through', and by 'normal' on which side of a "
-                          "plane the body is");
-  }
-
-  // If the event of a contact has no value, its gap has none.
-  static void name_gap(const Contact& c, Outcome& outcome) {
-    const std::string event = "the formula of the event '" + c.name + ".hits' has no value";
-    if (outcome.kind != OutcomeKind::not_a_number || !outcome.message.starts_with(event)) return;
-    outcome.message.replace(0, event.size(), "the gap of contact '" + c.name + "' has no value");
-    outcome.hint = "a gap has values on both sides of the surface: abs(z)^n*sign(z) in place of z^n";
-    outcome.place = c.span;
-  }
-
-  // The velocities at the start of a mode are not from the user, so the outcome does not blame the user's values.
-  void explain(Outcome& outcome) {
-    if (outcome.kind == OutcomeKind::inconsistent)
-      outcome = {OutcomeKind::singular, "no velocities fit the modes of the contacts" + when(),
-                 "end the motion before, or take coordinates that are regular there"};
-    for (const Contact& c : bodies_.contacts) name_gap(c, outcome);
-    name_angles(outcome);
-  }
-
-  // If the motion is singular, names the angles that are near their singularity.
-  void name_angles(Outcome& outcome) {
-    constexpr double kNear = 0.1;
-    if (outcome.kind != OutcomeKind::singular) return;
-    AngleWatch watch(s_, parameter_values<double>(*s_.model));
-    watch.see(bodies_.at.t.get_d(), [this](std::size_t a) { return bodies_.at.q[a]; });
-    for (std::size_t i = 0; i < watch.triples.size(); ++i) {
-      if (!(watch.least[i].value < kNear)) continue;
-      const AngleTriple& triple = watch.triples[i];
-      outcome.message += "; the angles " + triple.angles + " of '" + triple.body + "' are near their singularity";
-      outcome.hint = "end the motion before, or describe the orientation of '" + triple.body +
-                     "' by a quaternion: quat(e0, e1, e2, e3)";
-    }
-  }
+  double now() const { return bodies_.at.t.get_d(); }
 
   // Names the slips that passed zero where an event has ended the motion: whether they go on follows from the next
   // modes.
   void name_last_slips() {
-    if (!bodies_.dynamics.has_values() || !is_regular().ok() || bodies_.shrinks()) return;
+    if (!bodies_.dynamics.has_values() || !faults_.not_regular().ok() || bodies_.shrinks()) return;
     if (std::none_of(bodies_.excluded.begin(), bodies_.excluded.end(), [](const auto& e) { return e.slips; })) return;
     const std::vector<ContactSolution> list = consistent_modes(bodies_.with_touching());
     if (list.size() != 1) return;
@@ -187,13 +124,6 @@ class HybridMotion {
         joined_.rename(event_name(c, ModeChange::sticks), event_name(c, ModeChange::reverses));
   }
 
-  // Fails if a contact has not done what its mode says.
-  Outcome as_its_modes() const {
-    if (const auto how = bodies_.contradiction())
-      return {OutcomeKind::inconsistent, *how + when(), "please report the model, as this is a bug of anholon"};
-    return {};
-  }
-
   // Friction that touches its bound and falls again is not a slip.
   void take_back_touches() {
     for (std::size_t c = 0; c < bodies_.contacts.size() && !shares_friction(bodies_.modes); ++c) {
@@ -209,26 +139,26 @@ class HybridMotion {
   // Computes impacts where a closed gap shrinks, then chooses the modes by the accelerations.
   Outcome choose() {
     bodies_.look();
-    if (Outcome o = as_its_modes(); !o.ok()) return o;
+    if (Outcome o = faults_.not_as_its_mode(); !o.ok()) return o;
     if (!bodies_.dynamics.has_values()) return what_has_no_value();
     const ContactModes before = bodies_.modes;
     bool over_border = false, struck = false;
     if (Outcome o = strike(over_border, struck); !o.ok()) return o;
     land();
     if (struck)
-      if (const auto c = bodies_.on_edge()) return on_edge(bodies_.contacts[*c], when());
+      if (const auto c = bodies_.on_edge()) return on_edge(bodies_.contacts[*c], now());
     bodies_.stop_ended_slips();
     ContactProblem p = bodies_.with_touching();
     slips_->guess_directions(p);
     const std::vector<ContactSolution> list = consistent_modes(p);
-    if (list.size() != 1) return undecided(list.size());
+    if (list.size() != 1) return faults_.undecided(list.size());
     slips_->tell_who_slips_too(list[0].modes);
     bodies_.modes = list[0].modes;
     if (over_border)
       tell_changes(before);
     else if (struck)
       tell_openings(before);
-    if (Outcome o = not_flat(kFlat); !o.ok()) return o;
+    if (Outcome o = faults_.lies_flat(false); !o.ok()) return o;
     note_rests(p, list[0]);
     name_reversals(bodies_.modes);
     const auto open = of_modes(p, ContactModes(bodies_.contacts.size()));
@@ -253,47 +183,28 @@ class HybridMotion {
     bodies_.drop_left_over();
     bodies_.bound_rest();
     // The check is made again, because coordinates that are round-off were set to zero.
-    return is_regular();
-  }
-
-  // Fails if the gap or the slip velocity of a touching contact has no derivatives.
-  Outcome is_regular() const {
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
-      if (!bodies_.near.closed(c) && bodies_.dynamics.place(c).gap > 0) continue;
-      if (!bodies_.dynamics.has_derivatives(c)) return without_derivatives(bodies_.contacts[c], when());
-      if (!bodies_.dynamics.has_slip(c)) return without_slip(bodies_.contacts[c], when());
-    }
-    return {};
-  }
-
-  // Fails if a touching body lies flat.
-  Outcome not_flat(long double part) {
-    roots_.see(bodies_.at);
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
-      if (bodies_.near.closed(c) && roots_.least_part(c) < part)
-        return lies_flat(bodies_.contacts[c], roots_.least_part(c), when());
-    return {};
+    return faults_.not_regular();
   }
 
   // Computes impacts where a closed gap shrinks: at a border of a surface, first those on the side from which the
   // bodies come, then those on the other side, if the velocities lead there.
   Outcome strike(bool& over_border, bool& struck) {
     for (std::size_t k = 0; k < kMostImpacts; ++k) {
-      if (Outcome o = is_regular(); !o.ok()) return o;
+      if (Outcome o = faults_.not_regular(); !o.ok()) return o;
       if (k == 0 && (bodies_.shrinks() || bodies_.modes.empty()))
-        if (const auto c = bodies_.on_edge()) return meets_edge(bodies_.contacts[*c], when());
+        if (const auto c = bodies_.on_edge()) return meets_edge(bodies_.contacts[*c], now());
       if (bodies_.shrinks()) {
         struck = true;
         if (Outcome o = impact(); !o.ok()) return o;
       } else if (bodies_.pass_borders()) {
         over_border = true;
-        if (Outcome o = not_inside(when() + " where its surface jumps", kJumped); !o.ok()) return o;
+        if (Outcome o = faults_.inside_behind_jump(); !o.ok()) return o;
       } else {
         return {};
       }
     }
     for (std::size_t c = 0; over_border && c < bodies_.contacts.size(); ++c)
-      if (bodies_.near.closed(c) && bodies_.near.gap_rate(c) < 0) return on_edge(bodies_.contacts[c], when());
+      if (bodies_.near.closed(c) && bodies_.near.gap_rate(c) < 0) return on_edge(bodies_.contacts[c], now());
     return {};
   }
 
@@ -330,8 +241,9 @@ class HybridMotion {
 
   // The motion with all contacts open names the formula that has no value.
   Outcome what_has_no_value() {
-    Outcome outcome, without = {OutcomeKind::not_a_number, "masses or forces have no value" + when(),
-                                "start or stop the motion elsewhere"};
+    Outcome outcome, without = told({OutcomeKind::not_a_number, "masses or forces have no value" + at_time(now()),
+                                     "start or stop the motion elsewhere"},
+                                    now());
     bodies_.modes.assign(bodies_.contacts.size(), {});
     segments_->follow(end_, outcome);
     return outcome.ok() ? without : outcome;
@@ -392,16 +304,6 @@ class HybridMotion {
     while (any && order_ > kLowest && least_time(order_) > least) o_.order = --order_;
   }
 
-  Outcome undecided(std::size_t modes) const {
-    std::string names;
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
-      if (!bodies_.near.closed(c) || bodies_.contacts[c].under) continue;
-      names += (names.empty() ? "'" : ", '") + bodies_.contacts[c].name + "'";
-      if (modes == 0 && bodies_.dynamics.loses_rank(c)) return rank_lost(bodies_.contacts[c], when());
-    }
-    return painleve(modes, names + " ", when());
-  }
-
   Outcome impact() {
     const std::size_t n = bodies_.at.q.size();
     std::vector<bool> touches;
@@ -411,24 +313,27 @@ class HybridMotion {
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
       touches.push_back(bodies_.near.closed(c) && bodies_.near.gap_rate(c) <= 0);
     if (const std::string& nonlinear = bodies_.dynamics.nonlinear_constraint(); !nonlinear.empty())
-      return {OutcomeKind::inconsistent,
-              "the contact '" + bodies_.contacts[striking].name + "' strikes" + when() + ", and the constraint '" +
-                  nonlinear + "' is not linear in the velocities: no law tells its impulse",
-              "end the motion before the impact, or write the constraint so that it is linear in the velocities"};
+      return told({OutcomeKind::inconsistent,
+                   "the contact '" + bodies_.contacts[striking].name + "' strikes" + at_time(now()) +
+                       ", and the constraint '" + nonlinear +
+                       "' is not linear in the velocities: no law tells its impulse",
+                   "end the motion before the impact, or write the constraint so that it is linear in the velocities"},
+                  now());
     std::vector<Impact> list = impacts(bodies_.dynamics, bodies_.contacts, touches);
     if (list.size() != 1) {
       bodies_.first_alone(touches);
       list = impacts(bodies_.dynamics, bodies_.contacts, touches);
     }
-    if (list.size() != 1) return undecided(list.size());
+    if (list.size() != 1) return faults_.undecided(list.size());
     std::vector<long double> after(bodies_.at.qd.begin(), bodies_.at.qd.end());
     for (std::size_t a = 0; a < n; ++a) after[a] += list[0].jump[a];
     constexpr long double kGrows = 1e-12L;
     if (list[0].work > kGrows * list[0].terms)
-      return {OutcomeKind::inconsistent, "the impact would raise the energy" + when(),
-              bodies_.contacts[0].law == ImpactLaw::newton
-                  ? "Newton's law with friction does so in this direction: impact = \"poisson\" in the contacts"
-                  : "take a smaller restitution"};
+      return told({OutcomeKind::inconsistent, "the impact would raise the energy" + at_time(now()),
+                   bodies_.contacts[0].law == ImpactLaw::newton
+                       ? "Newton's law with friction does so in this direction: impact = \"poisson\" in the contacts"
+                       : "take a smaller restitution"},
+                  now());
     std::vector<EventReport::Change> changes;
     const std::vector<double> states = bodies_.at.states;
     impact_states_.add(bodies_.at, after, list[0].impulses);
@@ -482,7 +387,7 @@ class HybridMotion {
   Workspace& s_;
   const std::vector<Contact> contacts_;
   TouchingBodies bodies_;
-  GapRoots roots_;
+  ContactFaults faults_;
   JoinedReport joined_;
   Rational end_;
   Accumulation accumulation_;

@@ -1,5 +1,5 @@
 // Computes a motion with contacts: segments, in each of which the contacts keep their modes and the motion is that of a
-// model of its own (contact/mode_model.h), joined to one run.
+// model of its own (contact/mode/mode_model.h), joined to one run.
 #pragma once
 #include "modelfile/contacts.h"
 #include "simulation/simulate.h"

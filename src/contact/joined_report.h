@@ -1,6 +1,6 @@
 // Joins the reports of the segments of a motion with contacts.
 #pragma once
-#include "contact/mode_model.h"
+#include "contact/mode/mode_model.h"
 #include "observe/report.h"
 
 namespace anholon {

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "contact/joined_report.h"
-#include "contact/ready_modes.h"
+#include "contact/mode/ready_modes.h"
 #include "contact/segment_rows.h"
 #include "contact/touching_bodies.h"
 #include "observe/options.h"

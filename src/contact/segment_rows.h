@@ -1,6 +1,6 @@
 // The rows of the segments of a motion with contacts, in the columns that all segments have.
 #pragma once
-#include "contact/mode_model.h"
+#include "contact/mode/mode_model.h"
 #include "observe/options.h"
 #include "result/rows.h"
 

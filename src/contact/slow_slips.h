@@ -1,6 +1,6 @@
 // Slips so slow that their friction makes the motion stiff (theory: contact, slow slips).
 #pragma once
-#include "contact/mode_model.h"
+#include "contact/mode/mode_model.h"
 #include "contact/touching_bodies.h"
 #include "result/rows.h"
 

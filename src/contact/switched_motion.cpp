@@ -6,8 +6,8 @@
 #include "contact/joined_report.h"
 #include "contact/law/contact_dynamics.h"
 #include "contact/segment_rows.h"
-#include "contact/switched_model.h"
-#include "numeric/number.h"
+#include "contact/mode/switched_model.h"
+#include "numeric/told_time.h"
 
 namespace anholon {
 
@@ -36,22 +36,24 @@ class SwitchedMotion {
     for (std::size_t k = 0; outcome.ok() && at_.t < end_; ++k) {
       const Rational before = at_.t;
       if (k == kMostSegments)
-        outcome = {OutcomeKind::interrupted, "more than 100000 changes of the modes" + when(),
-                   "end the motion earlier"};
+        outcome = told({OutcomeKind::interrupted, "more than 100000 changes of the modes" + at_time(now()),
+                        "end the motion earlier"},
+                       now());
       else if (!segment(outcome))
         break;
       at_once = at_.t == before ? at_once + 1 : 0;
       if (outcome.ok() && at_once == kMostAtOnce)
-        outcome = {OutcomeKind::step_collapse,
-                   "events accumulate: '" + last_event_ + "' and others fire again and again" + when(),
-                   "let an event end the motion (stop = true), or set a mode in which it does not happen"};
+        outcome = told({OutcomeKind::step_collapse,
+                        "events accumulate: '" + last_event_ + "' and others fire again and again" + at_time(now()),
+                        "let an event end the motion (stop = true), or set a mode in which it does not happen"},
+                       now());
     }
     if (at_.t < end_) rows_.end_early();
     return joined_.report(std::move(outcome), at_.t.get_d(), rows_.rows());
   }
 
  private:
-  std::string when() const { return " at t = " + number_text(at_.t.get_d(), 12); }
+  double now() const { return at_.t.get_d(); }
 
   static void must_be_of_state(const Event& e, const Assignment& a) {
     for (const NodeId id : symbols({&a.value, 1})) {
@@ -174,7 +176,10 @@ class SwitchedMotion {
       outcome = make_scenario(model(setting), *s_.system.form, {}, scenario);
       if (!outcome.ok()) {
         if (!last_event_.empty())
-          outcome.message = "after the event '" + last_event_ + "'" + when() + ": " + outcome.message;
+          outcome =
+              told({outcome.kind, "after the event '" + last_event_ + "'" + at_time(now()) + ": " + outcome.message,
+                    outcome.hint, outcome.place},
+                   now());
         return false;
       }
       const std::vector<double> found = scenario.state.qd;

@@ -1,5 +1,5 @@
 // Computes a motion with constraints that hold in some modes: events set the modes, and between them the motion is that
-// of a model of its own (contact/switched_model.h). When a constraint begins to hold, the velocities jump by the least
+// of a model of its own (contact/mode/switched_model.h). When a constraint begins to hold, the velocities jump by the least
 // change in the mass norm after which it holds (theory: contact).
 #pragma once
 #include "modelfile/contacts.h"

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "contact/mode_model.h"
+#include "contact/mode/mode_model.h"
 #include "formula/formula.h"
 #include "integrate/motion_state.h"
 #include "integrate/series/sign_change.h"

@@ -1,8 +1,8 @@
 #include "ensemble/with_contacts.h"
 
 #include "contact/hybrid.h"
-#include "contact/mode_model.h"
-#include "contact/switched_model.h"
+#include "contact/mode/mode_model.h"
+#include "contact/mode/switched_model.h"
 
 namespace anholon {
 

@@ -10,9 +10,8 @@
 
 namespace anholon {
 
-// `when`: " at t = …", if the time is known.
-inline Outcome becomes_singular(const std::string& when = {}) {
-  return {OutcomeKind::singular, "the system Jacobian becomes singular" + when, "end the motion before"};
+inline Outcome becomes_singular() {
+  return {OutcomeKind::singular, "the system Jacobian becomes singular", "end the motion before"};
 }
 
 // True if the spectral radius of A = J0^-1 (J1 - J0), estimated by the norm of the balanced A^8, is at most 1/2. If it

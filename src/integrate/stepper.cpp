@@ -7,6 +7,7 @@
 #include "base/assert.h"
 #include "integrate/series/kinks.h"
 #include "integrate/step_budget.h"
+#include "numeric/told_time.h"
 
 namespace anholon {
 
@@ -355,7 +356,11 @@ Outcome Stepper<N>::look_back() {
   expand_again(last);
   PresentStep<N> step = present();
   const std::optional<W> met = guard_.singular_within(step, now.motion.t - last.motion.t, W(0));
-  if (met) return becomes_singular(" at t = " + number_text(to_double(W(last.motion.t + *met)), 12));
+  if (met) {
+    Outcome o = becomes_singular();
+    tell_time(o, to_double(W(last.motion.t + *met)));
+    return o;
+  }
   record().careful = true;
   const Outcome o = expand_here(now.motion.leading);
   track_.begun().at = now;

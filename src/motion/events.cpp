@@ -1,5 +1,6 @@
 // Applies what events set where the last step has ended.
 #include "motion/motion.h"
+#include "numeric/told_time.h"
 
 namespace anholon {
 
@@ -97,8 +98,9 @@ Outcome Motion<N>::to_nearest(std::vector<W>& state) {
 
 // The outcome of a motion that meets a bound at the time `t`.
 static Outcome beyond(const Bound& b, double t) {
-  return {OutcomeKind::not_a_number, b.fault + " at t = " + number_text(t, 12),
-          "end the motion before, give the table more knots, or outside = \"hold\" or \"linear\""};
+  return told({OutcomeKind::not_a_number, b.fault + at_time(t),
+               "end the motion before, give the table more knots, or outside = \"hold\" or \"linear\""},
+              t);
 }
 
 template <Number N>
@@ -155,9 +157,10 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
     o.message = "after the event '" + set->name + "': " + o.message;
     return fail(std::move(o));
   }
-  const std::string after = "after the event '" + set->name + "', at t = " + number_text(to_double(now), 12);
+  const std::string after = "after the event '" + set->name + "'," + at_time(to_double(now));
   if (goes_on)
-    if (o = all_have_values(*s_.model, leg_->stepper, quadratures_.size(), after); !o.ok()) return fail(std::move(o));
+    if (o = all_have_values(*s_.model, leg_->stepper, quadratures_.size(), after); !o.ok())
+      return fail(told(std::move(o), to_double(now)));
   for (std::size_t i = 0; i < met.size(); ++i)
     if (leaves(i, met[i], now > start)) return fail(beyond(s_.model->bounds[i], to_double(now)));
   W correction(0);

@@ -5,6 +5,7 @@
 
 #include "expr/copy.h"
 #include "kernel/kernel.h"
+#include "numeric/told_time.h"
 #include "structure/redundancy.h"
 
 namespace anholon {
@@ -89,7 +90,7 @@ Outcome Motion<N>::start(const StateChoice& choice) {
   }
   accelerate(*leg_);
   Outcome o = leg_->stepper.start(start_.t, start_.state, start_.leading);
-  if (o.kind == OutcomeKind::not_a_number) o.message += " at t = " + number_text(to_double(start_.t), 12);
+  if (o.kind == OutcomeKind::not_a_number) tell_time(o, to_double(start_.t));
   return o;
 }
 
@@ -206,7 +207,7 @@ Outcome Motion<N>::at(const W& t) {
     if (beside_.shown) return anholon::settle_at(beside_.leg->point, place, stages_ > 0);
   }
   if (Outcome o = leg_->stepper.at(t, leg_->point); !o.ok()) {
-    o.message += " at t = " + number_text(to_double(t), 12);
+    tell_time(o, to_double(t));
     return o;
   }
   return stages_ > 0 ? leg_->point.extend() : Outcome{};

@@ -16,6 +16,7 @@
 #include "motion/representation.h"
 #include "motion/saved.h"
 #include "motion/set_by_event.h"
+#include "numeric/told_time.h"
 #include "setup/choice_watch.h"
 #include "setup/nearest_state.h"
 #include "setup/scenario.h"
@@ -40,7 +41,7 @@ Outcome settle_at(Expansion<W>& point, const Start<W>& place, bool beyond) {
   if (o.ok()) o = point.project();
   if (o.ok()) o = point.solve();
   if (o.ok() && beyond) o = point.extend();
-  if (!o.ok()) o.message += " at t = " + number_text(to_double(place.t), 12);
+  tell_time(o, to_double(place.t));
   return o;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "integrate/sigma_schedule.h"
+#include "numeric/told_time.h"
 
 namespace anholon {
 
@@ -68,7 +69,7 @@ Outcome StateMotion::at(W t) {
     if (o.ok()) o = point_.solve();
   }
   if (!o.ok())
-    o.message += " at t = " + number_text(to_double(t), 12);
+    tell_time(o, to_double(t));
   else if (stages_ > 0)
     o = point_.extend();
   return o;

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "motion/motion.h"
+#include "numeric/told_time.h"
 #include "setup/eliminate.h"
 #include "setup/output_tape.h"
 #include "structure/branch.h"
@@ -131,7 +132,7 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
   const System& system = *motion.program().system;
   const Expansion<W>& point = stepper.point();
   std::string& message = outcome.message;
-  const std::string when = " at t = " + number_text(to_double(stepper.time()), 12);
+  const std::string when = at_time(to_double(stepper.time()));
   if (const std::string name = unbounded(s, motion); !name.empty() && outcome.kind != OutcomeKind::interrupted) {
     outcome.kind = OutcomeKind::blow_up;
     message += "; " + name + " grows without bound";

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "numeric/told_time.h"
+
 namespace anholon {
 
 namespace {
@@ -64,7 +66,7 @@ Outcome SecondMotion::at(long double t, const Expansion<long double>& taylor) {
   if (!there.ok()) return there;
   work_ = motion_->integrals().at(0);
   Outcome o = put(t, taylor);
-  if (!o.ok()) o.message += " at t = " + number_text(convert<double>(t), 12);
+  tell_time(o, convert<double>(t));
   return o;
 }
 

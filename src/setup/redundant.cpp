@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "numeric/told_time.h"
+
 namespace anholon {
 
 // A constraint whose residual exceeds this part of the size of the state no longer follows from the others.
@@ -35,9 +37,10 @@ Outcome Redundant<W>::hold(const Expansion<W>& point, bool start, std::vector<Mi
                 name + "contradicts the others: it is missed by " +
                     number_text(std::abs(to_double((*outputs_)[r])), 3) + " at the start",
                 "leave it out, or the one that it contradicts"};
-      return {OutcomeKind::singular,
-              name + "no longer follows from the others at t = " + number_text(to_double(point.time()), 12),
-              "it was redundant at the start only: start elsewhere, or leave out one of the constraints"};
+      const double t = to_double(point.time());
+      return told({OutcomeKind::singular, name + "no longer follows from the others" + at_time(t),
+                   "it was redundant at the start only: start elsewhere, or leave out one of the constraints"},
+                  t);
     }
   }
   return {};

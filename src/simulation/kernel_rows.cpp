@@ -50,7 +50,8 @@ KernelRows::KernelRows(Workspace& s, const SimulationOptions& o, const Motion<do
     : s_(s), o_(o), takers_(takers), waiting_(std::move(waiting)), stages_(stages), program_(motion.program()),
       point_(program_, motion.parameters(), std::max(1, stages)),
       check_(columns_after_time(s, largest_order(s, program_.d))),
-      work_(std::vector<Block>(blocks_of(point_.state_size()), Block(kTogether)), [this](Block& block) { work(block); }) {
+      work_(std::vector<Block>(blocks_of(point_.state_size()), Block(kTogether)),
+            [this](Block& block) { work(block); }) {
   program_.system = &s.system;
 }
 

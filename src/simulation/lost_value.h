@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "motion/course.h"
+#include "numeric/told_time.h"
 #include "simulation/followed_value.h"
 
 namespace anholon {
@@ -61,10 +62,12 @@ class LostValues {
   }
 
   static Outcome outcome(const Model& model, const Lost& lost) {
-    return {OutcomeKind::not_a_number,
-            "the formula of the event '" + model.events[*lost.event].name +
-                "' has no value from t = " + number_text(to_double(lost.t), 12) + " on",
-            kEventWithoutValue};
+    const double t = to_double(lost.t);
+    return told({OutcomeKind::not_a_number,
+                 "the formula of the event '" + model.events[*lost.event].name +
+                     "' has no value from t = " + number_text(t, 12) + " on",
+                 kEventWithoutValue},
+                t);
   }
 
  private:

@@ -9,6 +9,7 @@
 #include "simulation/first_pull.h"
 #include "simulation/followed_value.h"
 #include "simulation/lost_value.h"
+#include "simulation/run_end.h"
 #include "simulation/run_rows.h"
 #include "simulation/trust.h"
 
@@ -45,13 +46,6 @@ Method method(const SimulationOptions& o) {
              : o.method;
 }
 
-// A formula that ends with t, as T - t = -1, tells no time.
-bool tells_time(const std::string& message) {
-  for (const char* text : {" at t = ", " from t = ", " past t = "})
-    if (message.find(text) != std::string::npos) return true;
-  return false;
-}
-
 Column monitored(const Model& model) {
   Column es;
   for (const Monitor& m : model.monitors) es.push_back(m.value);
@@ -69,7 +63,8 @@ class Run {
         course_(s, step_settings(*s.model, o), method(o), quadratures(s, power_, o), stages_), shown_(course_),
         watch_(s, power_, o.conserved, motion().parameters()), angles_(s, doubles(motion().parameters())), judge_(s, o),
         paces_(s.model->events), lost_(*s.model),
-        rows_({s, o, stages_, course_, shown_, watch_, judge_, floors_, report_}, sink) {
+        rows_({s, o, stages_, course_, shown_, watch_, judge_, floors_, report_}, sink),
+        end_({s, o, stages_, first_followed(), course_, rows_, report_}) {
     if (o.watches_floors) floors_.emplace(s, o.watches_carriers && !o.resume);
     report_.model = s.model->title;
     report_.form = s.system.form->name;
@@ -217,7 +212,7 @@ class Run {
     if (report_.outcome.ok() && course_.steps() > 0 && shown_.at(course_.time()).ok())
       watch_.end(shown_.point(), shown_.work(), report_);
     if (o_.save) save();
-    if (!report_.outcome.ok()) stopped();
+    if (!report_.outcome.ok()) end_.stop();
   }
 
   // Limits the stretch to the steps after which nothing is due.
@@ -259,7 +254,7 @@ class Run {
     if (report_.outcome.ok() && !(end == course_.time())) {
       report_.outcome = lost.event ? LostValues<N>::outcome(*s_.model, lost)
                                    : negative_mass(*s_.model, masses.mass, to_double(masses.t));
-      end_.reached = end;
+      end_.reach(end);
     }
     return !(report_.outcome.ok() && course_.by_taylor() && motion().fired()) || events();
   }
@@ -310,15 +305,6 @@ class Run {
   // The first of the followed formulas among the quadratures.
   std::size_t first_followed() const { return 1 + s_.model->masses.size(); }
 
-  // Tells the values of the followed formulas at t, a time of the last step.
-  void tell_last_values(const W& t) {
-    std::optional<Expansion<W>> point;
-    o_.stopped([&](std::size_t i) {
-      if (!point) point.emplace(motion().program(), motion().parameters(), std::max(1, stages_));
-      return value_of_quadrature(motion().stepper(), t, first_followed() + i, *point).first;
-    });
-  }
-
   // Applies the events that fired in the last step; returns false if they end the motion.
   bool events() {
     rows_.settle();
@@ -345,9 +331,9 @@ class Run {
     }
     if (report_.outcome.ok()) report_.outcome = pace;
     judge_.events(occurrences);
-    if (!goes_on || !report_.outcome.ok()) end_.reached = t;
+    if (!goes_on || !report_.outcome.ok()) end_.reach(t);
     if (!report_.outcome.ok()) {
-      end_.before_event.emplace(std::move(before), has_row);
+      end_.keep_before_event(std::move(before), has_row);
       return false;
     }
     angles_.set_parameters(doubles(motion().parameters()));
@@ -371,53 +357,6 @@ class Run {
            to_double(*rows_.last()) == to_double(t);
   }
 
-  // Ends the motion where it cannot be continued.
-  void stopped() {
-    if (!tells_time(report_.outcome.message)) {
-      report_.outcome.message += " at t = " + number_text(to_double(course_.time()), 12);
-      // The user did not ask for an end here.
-      const bool stopped_by_itself =
-          report_.outcome.kind == OutcomeKind::interrupted && !(o_.cancelled && o_.cancelled());
-      if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
-          report_.outcome.kind == OutcomeKind::no_convergence || report_.outcome.kind == OutcomeKind::not_a_number ||
-          stopped_by_itself)
-        explain_stop(s_, motion(), report_.outcome);
-    }
-    if (course_.steps() == 0) return;
-    const Outcome why = std::exchange(report_.outcome, {});
-    if (end_.before_event)
-      row_before_event();
-    else if (const std::optional<W> last = last_good_state(why);
-             last && o_.stopped && !o_.followed.empty() && course_.by_taylor())
-      tell_last_values(*last);
-    report_.outcome = why;
-  }
-
-  // Events that could not be applied leave the state before them as the last good one.
-  void row_before_event() {
-    const auto& [state, has_row] = *end_.before_event;
-    motion().go_back();
-    if (!has_row && motion().settle_at(state).ok()) rows_.of_present_point(state.t, "");
-  }
-
-  // Gives the last good state a row of its own, unless it has one: the end of the motion, the state reached, or that
-  // before if the motion cannot go on from there. Returns the time of this row.
-  std::optional<W> last_good_state(const Outcome& why) {
-    const W before = course_.before(), last = end_.reached                           ? *end_.reached
-                                              : why.kind == OutcomeKind::interrupted ? course_.time()
-                                                                                     : before;
-    if (schedule().every_step() || rows_.has_passed(last)) return rows_.last();
-    rows_.at(last, "");
-    if (report_.outcome.ok()) return last;
-    if (!course_.by_taylor()) return std::nullopt;
-    // So near to a singular J, the equations cannot be solved to all digits. The series hold as far back as forward, so
-    // the row is made at the mirrored time.
-    report_.outcome = {};
-    const W mirrored = before - (course_.time() - before);
-    rows_.at(mirrored, "");
-    return report_.outcome.ok() ? std::optional(mirrored) : std::nullopt;
-  }
-
   // The rows may be using the watch beside the motion, so the watch gets the work only here.
   void turn_over() { watch_.turn_over(work_); }
 
@@ -426,7 +365,7 @@ class Run {
   void report() {
     report_.order = course_.order();
     report_.method = course_.report();
-    report_.t = to_double(end_.reached ? *end_.reached : course_.time());
+    report_.t = to_double(end_.time());
     report_.steps = course_.steps();
     report_.constraints = to_double(course_.worst_constraint());
     report_.smallest_sigma = to_double(course_.smallest_sigma());
@@ -505,16 +444,11 @@ class Run {
   LostValues<N> lost_;
   PacedStretch<W> stretch_;
   std::optional<Defect> defect_;
-  // The end of a motion before its requested end: its time, and if events could not be applied, the state before them
-  // and whether it has a row.
-  struct {
-    std::optional<W> reached;
-    std::optional<std::pair<Start<W>, bool>> before_event;
-  } end_;
   W work_{0};  // the greatest work so far at the start of a step
   SimulationReport report_;
   SimulationPlans plans_;  // the plans of the motion are in the motion
-  RunRows<N> rows_;        // the last member, because it uses the others
+  RunRows<N> rows_;        // after the members that it uses
+  RunEnd<N> end_;          // the last member, because it uses the others
 };
 
 SimulationReport in_doubles(Workspace& s, const SimulationOptions& o, RowSink& sink, SimulationPlans* plans) {

@@ -2,6 +2,7 @@
 #pragma once
 #include "integrate/series/sign_change.h"
 #include "motion/course.h"
+#include "numeric/told_time.h"
 #include "observe/angles.h"
 #include "observe/report.h"
 #include "observe/watch.h"
@@ -72,9 +73,10 @@ MassLimit<Wider<N>> masses_positive_until(const Model& model, const Course<N>& c
 }
 
 inline Outcome negative_mass(const Model& model, std::size_t mass, double t) {
-  return {OutcomeKind::negative_mass,
-          "the mass of '" + model.masses[mass].name + "' is negative from t = " + number_text(t, 12) + " on",
-          "end the motion before, or let the mass end at zero flow"};
+  return told({OutcomeKind::negative_mass,
+               "the mass of '" + model.masses[mass].name + "' is negative from t = " + number_text(t, 12) + " on",
+               "end the motion before, or let the mass end at zero flow"},
+              t);
 }
 
 // Notes on events whose limit is passed at the start: such an event does not happen until its formula has come back.

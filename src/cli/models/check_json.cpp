@@ -4,6 +4,7 @@
 #include "cli/models/check_report.h"
 #include "cli/models/conserved.h"
 #include "cli/say.h"
+#include "motion/start.h"
 
 namespace anholon::cli {
 
@@ -99,12 +100,13 @@ void dimensions(JsonWriter& j, const Scenario& s) {
 // The consistent initial state, each value with its origin.
 void initial_state(JsonWriter& j, const Scenario& s) {
   const Model& model = *s.model;
-  j.key("initial").open_object().key("t").number(number_text(s.state.t));
+  const InitialState<double> x = start_as_in_rows(s);
+  j.key("initial").open_object().key("t").number(number_text(x.t));
   for (std::size_t a = 0; a < s.state.q.size(); ++a)
     for (int k = 0; k < 2; ++k) {
       j.key(model.coordinates[a].name + (k ? "'" : "")).open_object();
-      j.key("value").number(number_text(k ? s.state.qd[a] : s.state.q[a]));
-      j.key("origin").string(name(k ? s.state.qd_origin[a] : s.state.q_origin[a])).close();
+      j.key("value").number(number_text(k ? x.qd[a] : x.q[a]));
+      j.key("origin").string(name(k ? x.qd_origin[a] : x.q_origin[a])).close();
     }
   for (const StateEntry& e : higher_state(s))
     j.key(e.name).open_object().key("value").number(number_text(e.value)).key("origin").string(name(e.origin)).close();

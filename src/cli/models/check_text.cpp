@@ -7,6 +7,7 @@
 #include "cli/models/check_report.h"
 #include "cli/models/conserved.h"
 #include "cli/say.h"
+#include "motion/start.h"
 #include "observe/rows/row_values.h"
 
 namespace anholon::cli {
@@ -132,9 +133,8 @@ void structure(const Scenario& s, const Explanation& x) {
 }
 
 // Describes the initial data that the structure needs, and the origin of each value.
-std::string data_needed(const Scenario& s, const std::vector<StateEntry>& higher) {
+std::string data_needed(const Scenario& s, const InitialState<double>& x, const std::vector<StateEntry>& higher) {
   constexpr std::size_t kNamed = 8;  // of more choices only the number is printed: the table shows them
-  const InitialState<double>& x = s.state;
   std::vector<std::string> chosen;
   std::size_t given = 0, derived = 0;
   const auto count = [&](const std::string& name, Origin origin) {
@@ -178,9 +178,9 @@ std::string value_text(double value, Origin origin, const InitialState<double>& 
 }
 
 void state_table(const Scenario& s) {
-  const InitialState<double>& x = s.state;
+  const InitialState<double> x = start_as_in_rows(s);
   const std::vector<StateEntry> higher = higher_state(s);
-  if (!x.q.empty()) say(stdout, "%s\n", data_needed(s, higher).c_str());
+  if (!x.q.empty()) say(stdout, "%s\n", data_needed(s, x, higher).c_str());
   const std::map<std::string, std::string> units = column_units(*s.model);
   const auto behind = [&](const std::string& name) {
     const auto unit = units.find(name);

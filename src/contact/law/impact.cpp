@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "contact/law/consistent_modes.h"
-#include "numeric/number.h"
+#include "numeric/told_time.h"
 
 namespace anholon {
 
@@ -82,23 +82,29 @@ Impact with_work(const ContactDynamics& dynamics, Jump jump, Impulses impulses) 
 
 }  // namespace
 
-Outcome painleve(std::size_t modes, const std::string& contacts, const std::string& when) {
+Outcome painleve(std::size_t modes, const std::string& contacts, double t) {
   if (modes == 0)
-    return {OutcomeKind::inconsistent,
-            "no mode of the contacts " + contacts + "is consistent (Painlevé's paradox)" + when,
-            "rigid bodies with this friction have no motion here: take less friction, or end the motion before"};
-  return {OutcomeKind::inconsistent,
-          std::to_string(modes) + " modes of the contacts " + contacts + "are consistent (Painlevé's paradox)" + when,
-          "rigid bodies with this friction have several motions here: take less friction, or end the motion before"};
+    return told({OutcomeKind::inconsistent,
+                 "no mode of the contacts " + contacts + "is consistent (Painlevé's paradox)" + at_time(t),
+                 "rigid bodies with this friction have no motion here: take less friction, or end the motion before"},
+                t);
+  return told(
+      {OutcomeKind::inconsistent,
+       std::to_string(modes) + " modes of the contacts " + contacts + "are consistent (Painlevé's paradox)" +
+           at_time(t),
+       "rigid bodies with this friction have several motions here: take less friction, or end the motion before"},
+      t);
 }
 
-Outcome rank_lost(const Contact& contact, const std::string& when) {
-  return {OutcomeKind::singular,
-          "the gap and the slip velocities of contact '" + contact.name +
-              "' are no longer independent in these coordinates" + when,
-          "end the motion before, or take coordinates that are regular there: Euler's angles are not where a disc lies "
-          "flat",
-          contact.span};
+Outcome rank_lost(const Contact& contact, double t) {
+  return told(
+      {OutcomeKind::singular,
+       "the gap and the slip velocities of contact '" + contact.name +
+           "' are no longer independent in these coordinates" + at_time(t),
+       "end the motion before, or take coordinates that are regular there: Euler's angles are not where a disc lies "
+       "flat",
+       contact.span},
+      t);
 }
 
 // The hint for a contact whose gap has no derivatives.
@@ -112,43 +118,48 @@ static std::string beside_or_round(const Contact& contact) {
          "end the motion before";
 }
 
-Outcome without_derivatives(const Contact& contact, const std::string& when) {
+Outcome without_derivatives(const Contact& contact, double t) {
   const bool formula = contact.shape.empty();
-  return {
-      OutcomeKind::singular,
-      "the gap of contact '" + contact.name + "' has no derivatives" + when +
-          (formula ? ", as at the apex of a cone or on an edge, where the normal of a surface has no direction" : ""),
-      beside_or_round(contact), contact.span};
+  return told(
+      {OutcomeKind::singular,
+       "the gap of contact '" + contact.name + "' has no derivatives" + at_time(t) +
+           (formula ? ", as at the apex of a cone or on an edge, where the normal of a surface has no direction" : ""),
+       beside_or_round(contact), contact.span},
+      t);
 }
 
-Outcome lies_flat(const Contact& contact, long double part, const std::string& when) {
+Outcome lies_flat(const Contact& contact, long double part, double t) {
   const bool formula = contact.shape.empty();
-  return {OutcomeKind::singular,
-          "the gap of contact '" + contact.name + "' loses its derivatives" + when +
-              (formula ? ", as at the apex of a cone or where a disc lies flat" : ", as where a disc lies flat") +
-              ": a root in it has fallen to " + number_text(static_cast<double>(part), 2) + " of what it was",
-          beside_or_round(contact), contact.span};
+  return told({OutcomeKind::singular,
+               "the gap of contact '" + contact.name + "' loses its derivatives" + at_time(t) +
+                   (formula ? ", as at the apex of a cone or where a disc lies flat" : ", as where a disc lies flat") +
+                   ": a root in it has fallen to " + number_text(static_cast<double>(part), 2) + " of what it was",
+               beside_or_round(contact), contact.span},
+              t);
 }
 
-Outcome without_slip(const Contact& contact, const std::string& when) {
-  return {OutcomeKind::singular,
-          "the slip velocity of contact '" + contact.name + "' has no value or no derivatives" + when,
-          "start or stop the motion elsewhere, or change the formula so that it is smooth here", contact.span};
+Outcome without_slip(const Contact& contact, double t) {
+  return told({OutcomeKind::singular,
+               "the slip velocity of contact '" + contact.name + "' has no value or no derivatives" + at_time(t),
+               "start or stop the motion elsewhere, or change the formula so that it is smooth here", contact.span},
+              t);
 }
 
-Outcome on_edge(const Contact& contact, const std::string& when) {
-  return {OutcomeKind::inconsistent,
-          "a body is held by an edge of the surface of contact '" + contact.name + "'" + when +
-              ", where the gap has no derivatives",
-          "write a contact for each side of the edge in place of one gap with min, max, abs or piecewise",
-          contact.span};
+Outcome on_edge(const Contact& contact, double t) {
+  return told({OutcomeKind::inconsistent,
+               "a body is held by an edge of the surface of contact '" + contact.name + "'" + at_time(t) +
+                   ", where the gap has no derivatives",
+               "write a contact for each side of the edge in place of one gap with min, max, abs or piecewise",
+               contact.span},
+              t);
 }
 
-Outcome meets_edge(const Contact& contact, const std::string& when) {
-  return {OutcomeKind::inconsistent,
-          "a body meets an edge of the surface of contact '" + contact.name + "'" + when +
-              ", where the normal of the surface has no direction, and moves to none of its sides",
-          beside_or_round(contact), contact.span};
+Outcome meets_edge(const Contact& contact, double t) {
+  return told({OutcomeKind::inconsistent,
+               "a body meets an edge of the surface of contact '" + contact.name + "'" + at_time(t) +
+                   ", where the normal of the surface has no direction, and moves to none of its sides",
+               beside_or_round(contact), contact.span},
+              t);
 }
 
 std::vector<Impact> impacts(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,

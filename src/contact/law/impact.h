@@ -10,24 +10,25 @@
 
 namespace anholon {
 
-// The outcome if no mode of the contacts, or more than one, is consistent. `contacts`: "'floor' "; `when`: " at t = 1".
-Outcome painleve(std::size_t modes, const std::string& contacts, const std::string& when);
+// The outcome if no mode of the contacts, or more than one, is consistent. `contacts`: "'floor' ". The messages of these outcomes
+// tell the time t.
+Outcome painleve(std::size_t modes, const std::string& contacts, double t);
 
 // The outcome if a contact alone loses rank (ContactDynamics::loses_rank), so that its modes cannot be judged.
-Outcome rank_lost(const Contact& contact, const std::string& when);
+Outcome rank_lost(const Contact& contact, double t);
 
 // The outcomes if the gap of a closed contact has no derivatives (ContactDynamics::has_derivatives), and if its slip
 // velocity has no value or no derivatives (ContactDynamics::has_slip).
-Outcome without_derivatives(const Contact& contact, const std::string& when);
-Outcome without_slip(const Contact& contact, const std::string& when);
+Outcome without_derivatives(const Contact& contact, double t);
+Outcome without_slip(const Contact& contact, double t);
 // The outcome if the gap of a closed contact loses its derivatives, because a root in it has fallen to this part of its
 // largest value.
-Outcome lies_flat(const Contact& contact, long double part, const std::string& when);
+Outcome lies_flat(const Contact& contact, long double part, double t);
 
 // The outcome if a body comes to rest at an edge of the surface of a contact, or strikes its sides without end.
-Outcome on_edge(const Contact& contact, const std::string& when);
+Outcome on_edge(const Contact& contact, double t);
 // The outcome if a body arrives at an edge of the surface of a contact, and moves to none of its sides.
-Outcome meets_edge(const Contact& contact, const std::string& when);
+Outcome meets_edge(const Contact& contact, double t);
 
 // The impulses of the contacts: along their gaps, and along the components of their slip velocities.
 struct Impulses {

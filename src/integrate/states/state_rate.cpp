@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/told_time.h"
+
 namespace anholon {
 
 StateRate::StateRate(const Program& program, const std::vector<double>& parameters,
@@ -53,10 +55,11 @@ Outcome StateRate::evaluate(double t, const std::vector<double>& state, bool pro
     return std::all_of(list.begin(), list.end(), [](double x) { return std::isfinite(x); });
   };
   const auto no_value = [&] {
-    return Outcome{OutcomeKind::not_a_number,
-                   "a formula has no value (a root or logarithm of a negative number, or a division by zero) at t = " +
-                       number_text(t, 12),
-                   "the motion leaves the region where the model is defined: stop it before, or change the formula"};
+    return told(
+        {OutcomeKind::not_a_number,
+         "a formula has no value (a root or logarithm of a negative number, or a division by zero)" + at_time(t),
+         "the motion leaves the region where the model is defined: stop it before, or change the formula"},
+        t);
   };
   if (!finite(state)) return no_value();
   if (!by_kernel(t, state, projected)) {

@@ -13,6 +13,7 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include "base/assert.h"
+#include "numeric/told_time.h"
 
 namespace anholon {
 
@@ -290,20 +291,24 @@ Outcome Sundials::Work::failed(int flag) const {
   static_assert(CV_TOO_MUCH_ACC == IDA_TOO_MUCH_ACC && CV_ERR_FAILURE == IDA_ERR_FAIL &&
                 CV_CONV_FAILURE == IDA_CONV_FAIL);
   if (flag == (ida ? IDA_MEM_FAIL : CV_MEM_FAIL)) throw std::bad_alloc();
-  const std::string who = title(), when = " at t = " + number_text(reached, 12);
+  const std::string who = title(), when = at_time(reached);
   const std::string remedy =
       "loosen the tolerance, end the motion before, or leave the motion to Taylor's series: --integrator taylor";
   // The failure of the equations themselves comes first.
-  if (!trouble.ok()) return {trouble.kind, trouble.message + ", says " + who + when, trouble.hint};
+  if (!trouble.ok()) return told({trouble.kind, trouble.message + ", says " + who + when, trouble.hint}, reached);
   switch (flag) {
   case CV_TOO_MUCH_ACC:
-    return {OutcomeKind::step_collapse, who + " cannot keep the tolerance in double numbers" + when, remedy};
+    return told({OutcomeKind::step_collapse, who + " cannot keep the tolerance in double numbers" + when, remedy},
+                reached);
   case CV_ERR_FAILURE:
-    return {OutcomeKind::step_collapse, who + " misses the tolerance with the smallest steps" + when, remedy};
+    return told({OutcomeKind::step_collapse, who + " misses the tolerance with the smallest steps" + when, remedy},
+                reached);
   case CV_CONV_FAILURE:
-    return {OutcomeKind::no_convergence, who + "'s iteration does not converge with the smallest steps" + when, remedy};
+    return told(
+        {OutcomeKind::no_convergence, who + "'s iteration does not converge with the smallest steps" + when, remedy},
+        reached);
   default:
-    return {OutcomeKind::no_convergence, who + " cannot go on" + when + ": " + last_error, remedy};
+    return told({OutcomeKind::no_convergence, who + " cannot go on" + when + ": " + last_error, remedy}, reached);
   }
 }
 
@@ -311,8 +316,9 @@ Outcome Sundials::Work::failed(int flag) const {
 Outcome Sundials::Work::interpolate(double t) {
   const int flag = ida ? IDAGetDky(memory, t, 0, y.get()) : CVodeGetDky(memory, t, 0, y.get());
   if (flag != 0)
-    return {OutcomeKind::interrupted, std::string(title()) + " has gone past t = " + number_text(t, 12),
-            "ask for rows in the order of time"};
+    return told({OutcomeKind::interrupted, std::string(title()) + " has gone past t = " + number_text(t, 12),
+                 "ask for rows in the order of time"},
+                t);
   const double* values = N_VGetArrayPointer(y.get());
   if (ida) {
     IDAGetDky(memory, t, 1, rate.get());

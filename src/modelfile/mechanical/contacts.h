@@ -1,7 +1,7 @@
 // [[contact]]: unilateral contacts with Coulomb friction and restitution (theory: contact).
 //
 // A contact is no part of the equations of a model: the reader returns the model in which all contacts are open.
-// Motions make a model for each mode of the contacts (contact/mode_model.h).
+// Motions make a model for each mode of the contacts (contact/mode/mode_model.h).
 #pragma once
 #include <cstdint>
 #include <functional>

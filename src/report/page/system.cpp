@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "motion/start.h"
 #include "numeric/number.h"
 #include "print/print_names.h"
 #include "report/markup.h"
@@ -80,7 +81,7 @@ class SystemSection {
   }
 
   std::string initial_data(const PageCase& c) const {
-    const InitialState<double>& x = c.scenario->state;
+    const InitialState<double> x = start_as_in_rows(*c.scenario);
     std::vector<std::vector<std::string>> rows;
     constexpr std::size_t kMost = 60;
     for (std::size_t a = 0; a < std::min(x.q.size(), kMost); ++a)

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "contact/mode_model.h"
+#include "contact/mode/mode_model.h"
 #include "support/contact_motion.h"
 
 namespace anholon {

@@ -1,9 +1,9 @@
-#include "contact/ready_modes.h"
+#include "contact/mode/ready_modes.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "numeric/number.h"
+#include "numeric/told_time.h"
 
 namespace anholon {
 
@@ -12,9 +12,10 @@ namespace anholon {
 static std::optional<Outcome> without_numbers(const ContactModes& modes, const ContactState& at) {
   const std::vector<double> numbers = mode_values(modes, at);
   if (std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })) return std::nullopt;
-  return Outcome{OutcomeKind::not_a_number,
-                 "the forces of the contacts have no finite values at t = " + number_text(at.t.get_d(), 12),
-                 "end the motion before, or take coordinates that are regular there"};
+  const double t = at.t.get_d();
+  return told({OutcomeKind::not_a_number, "the forces of the contacts have no finite values" + at_time(t),
+               "end the motion before, or take coordinates that are regular there"},
+              t);
 }
 
 ReadyMode& ReadyModes::begin(const ContactModes& modes, const ContactState& at, Outcome& outcome, ModeEnds ends) {

@@ -1,4 +1,4 @@
-#include "contact/switched_model.h"
+#include "contact/mode/switched_model.h"
 
 #include <algorithm>
 

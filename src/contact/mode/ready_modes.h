@@ -3,7 +3,7 @@
 #include <map>
 #include <memory>
 
-#include "contact/mode_model.h"
+#include "contact/mode/mode_model.h"
 #include "setup/scenario.h"
 #include "simulation/simulate.h"
 

@@ -1,4 +1,4 @@
-#include "contact/mode_model.h"
+#include "contact/mode/mode_model.h"
 
 #include <array>
 

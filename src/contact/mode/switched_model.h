@@ -1,6 +1,6 @@
 // Makes the model of given modes, in which a constraint with active = "…" either holds or is left out.
 #pragma once
-#include "contact/mode_model.h"
+#include "contact/mode/mode_model.h"
 
 namespace anholon {
 

@@ -1,8 +1,8 @@
-#include "contact/chosen_mode.h"
+#include "contact/mode/chosen_mode.h"
 
 #include <algorithm>
 
-#include "contact/switched_model.h"
+#include "contact/mode/switched_model.h"
 #include "modelfile/names/constant.h"
 #include "tape/tape.h"
 
