@@ -113,6 +113,22 @@ static bool before(const Span& a, const Span& b) {
   return std::tuple(a.file, a.line, a.column) < std::tuple(b.file, b.line, b.column);
 }
 
+// Says where else a mistake stands: "it stands in line 7, too". Of a part of the file that is not read any further, no
+// mistakes are known, so the text does not tell their number.
+static std::string said_of_others(const std::vector<Span>& others, const Span& first) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::uint32_t> lines;
+  for (const Span& o : others)
+    if (o.file == first.file && o.line != first.line && (lines.empty() || lines.back() != o.line))
+      lines.push_back(o.line);
+  if (lines.empty()) return others[0].file == first.file ? "it stands in this line again" : "it stands elsewhere, too";
+  std::string list;
+  for (std::size_t k = 0; k < std::min(lines.size(), kNamed); ++k)
+    list += (k ? ", " : "") + std::to_string(lines[k]);
+  return std::string(lines.size() > 1 ? "it stands in lines " : "it stands in line ") + list +
+         (lines.size() > kNamed ? " and others, too" : ", too");
+}
+
 void Diagnostics::gather(const std::function<bool(const std::string&)>& is_one) {
   std::map<std::string, std::vector<std::size_t>> alike;
   for (std::size_t k = 0; k < list_.size(); ++k)
@@ -121,15 +137,14 @@ void Diagnostics::gather(const std::function<bool(const std::string&)>& is_one) 
   for (auto& [message, places] : alike) {
     std::stable_sort(places.begin(), places.end(),
                      [&](std::size_t a, std::size_t b) { return before(list_[a].span, list_[b].span); });
-    std::size_t elsewhere = 0;
+    std::vector<Span> others;
     for (std::size_t k = 1; k < places.size(); ++k) {
       left_out[places[k]] = true;
-      elsewhere += before(list_[places[k - 1]].span, list_[places[k]].span) ? 1 : 0;
+      if (const Span& other = list_[places[k]].span; before(list_[places[k - 1]].span, other)) others.push_back(other);
     }
-    if (elsewhere == 0) continue;
+    if (others.empty()) continue;
     std::string& hint = list_[places[0]].hint;
-    hint += (hint.empty() ? "" : "; ") + std::string("it stands in ") + std::to_string(elsewhere) +
-            (elsewhere == 1 ? " other place, too" : " other places, too");
+    hint += (hint.empty() ? "" : "; ") + said_of_others(others, list_[places[0]].span);
   }
   std::vector<Diagnostic> kept;
   for (std::size_t k = 0; k < list_.size(); ++k)

@@ -39,6 +39,17 @@ static constexpr const char* kAboutModes = "a mode says which contacts are open,
                                            "with 'active' hold; a motion finds its modes "
                                            "itself";
 
+// Returns the option that a user means by a word that is none: the one that the word abbreviates, the file of the output
+// for --output and the like, or the one that is spelt alike; empty if there is none.
+static std::string near_option(const std::string& word, const std::vector<std::string>& known) {
+  constexpr std::size_t kShortest = 5;  // "--tol"
+  const auto begins = [&](const std::string& name) { return name.starts_with(word); };
+  if (word.size() >= kShortest && std::count_if(known.begin(), known.end(), begins) == 1)
+    return *std::find_if(known.begin(), known.end(), begins);
+  if (word.starts_with("--out") && std::find(known.begin(), known.end(), "-o") != known.end()) return "-o";
+  return did_you_mean(word, known);
+}
+
 // Throws if a word is no option of the command, and says which commands have it.
 void CommandLine::check_options(int argc, char** argv) const {
   const CLI::App *command = &app_, *outer = &app_;
@@ -62,7 +73,7 @@ void CommandLine::check_options(int argc, char** argv) const {
     };
     add_those_of(app_, "");
     if (outer != &app_) add_those_of(*outer, outer->get_name() + " ");
-    const std::string near = others.empty() ? did_you_mean(word, known) : "";
+    const std::string near = others.empty() ? near_option(word, known) : "";
     const std::string help = "anholon " + name + " --help";
     throw UsageError{"error: '" + name + "' has no option " + word +
                      (near.empty() ? "" : "; did you mean " + near + "?") +

@@ -18,7 +18,7 @@ BlockFile::BlockFile(const std::string& path)
     : file_(path), failed_(!file_.error().empty()),
       blocks_(std::vector<Block>(kBlocks), [this](Block& block) { write(block); }) {
   // A block goes to the system by one call, without a copy in the buffer of the stream.
-  if (!file_.part().empty()) std::setvbuf(file_.stream(), nullptr, _IONBF, 0);
+  if (file_.stream() && !file_.part().empty()) std::setvbuf(file_.stream(), nullptr, _IONBF, 0);
 }
 
 bool BlockFile::is_terminal() const { return file_.stream() && ::isatty(::fileno(file_.stream())); }

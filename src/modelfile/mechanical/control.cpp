@@ -178,7 +178,7 @@ static void read_output(const Item& i, Scope& scope, Model& model, Diagnostics& 
     const Expr x = component(0), y = component(1), z = component(2);
     v = Vector{x, y, z};
   } else if (value->is_formula()) {
-    v = evaluate(parse_formula(value->formula), scope);
+    v = as_point(evaluate(parse_formula(value->formula), scope), scope, value->span);
   } else {
     throw Failure(value->span, "an output is a formula, a vector, or a table with its value",
                   "height = {value = \"norm(P) - R\", unit = \"km\"}");
@@ -188,7 +188,8 @@ static void read_output(const Item& i, Scope& scope, Model& model, Diagnostics& 
   else if (const Vector* a = std::get_if<Vector>(&v))
     out.values = {a->x, a->y, a->z};
   else
-    throw Failure(value->span, std::string("an output is a number or a vector, this is ") + type_name(v));
+    throw Failure(value->span, std::string("an output is a number or a vector, this is ") + type_name(v),
+                  is_body(v) ? body_hint(v, scope) : "");
   if (out.values.size() == 1)
     record(out.name, out.values[0], out, model);
   else

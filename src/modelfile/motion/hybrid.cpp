@@ -14,9 +14,11 @@ void declare_state(const Item& i, Scope& scope, Model& model, Diagnostics& diagn
     throw Failure(i.span, "a state is a table with its rate and its initial value",
                   i.key + " = {rate = \"-flow\", initial = 1}");
   check_keys(i, "a state", "state", diagnostics);
+  // The state is declared all the same, so that its uses are no further errors.
   if (!i.find("rate"))
-    throw Failure(i.key_span, "the state '" + i.key + "' has no rate", "rate = \"…\", its derivative by time");
-  if (!i.find("initial")) throw Failure(i.key_span, "the state '" + i.key + "' has no initial value", "initial = 0");
+    diagnostics.error(i.key_span, "the state '" + i.key + "' has no rate", "rate = \"…\", its derivative by time");
+  if (!i.find("initial"))
+    diagnostics.error(i.key_span, "the state '" + i.key + "' has no initial value", "initial = 0");
   Scope::Declaration d;
   d.role = Scope::Role::state;
   d.index = model.states.size();
@@ -157,6 +159,7 @@ void read_states(const Item& root, Scope& scope, Model& model, Diagnostics& diag
         std::find_if(model.states.begin(), model.states.end(), [&](const StateVariable& s) { return s.name == i.key; });
     if (z == model.states.end()) continue;
     collect(diagnostics, [&] {
+      if (!i.find("rate")) return;
       const Item& rate = *i.find("rate");
       if (!rate.is_formula()) throw Failure(rate.span, "a rate is a formula");
       const Expr as_read = evaluate_number(parse_formula(rate.formula), scope);
@@ -168,6 +171,7 @@ void read_states(const Item& root, Scope& scope, Model& model, Diagnostics& diag
                         "write out the formula of that rate");
     });
     collect(diagnostics, [&] {
+      if (!i.find("initial")) return;
       const Item& initial = *i.find("initial");
       z->initial = scope.number(initial);
       no_multiplier(model, z->initial, initial.span, "an initial value");
