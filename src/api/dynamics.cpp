@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "api/data.h"
+#include "contact/mode/switched_model.h"
 #include "dynamics/pieces.h"
 #include "dynamics/rate_formulas_of.h"
 #include "model/exponents.h"
@@ -132,6 +133,15 @@ struct Dynamics::Data {
   explicit Data(System of) : system(std::move(of)), scenario(&system.data().scenario) {}
 };
 
+// Says what the equations are not solved for: a clause that follows a colon; empty if it is clear.
+static std::string not_solved_for(const Dynamics::Data& data) {
+  if (!data.scenario->redundant.empty())
+    return ": the constraints depend on one another, so that the equations do not determine their multipliers";
+  return data.function->minimal()
+             ? ": in independent velocities these are multipliers and derivatives beyond accelerations"
+             : "";
+}
+
 Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) {
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<Dynamics> {
@@ -168,7 +178,11 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
       data->scenario = &data->opened;
     }
     inner::Workspace s(*data->scenario);
-    data->function = inner::Dynamics::make(s, choice, {options.minimal, data->inputs.size()}, data->obstacle);
+    data->function =
+        inner::Dynamics::make(s, choice,
+                              {options.minimal, data->inputs.size(),
+                               inner::switching_parameters(*data->scenario->model, of.model->contacts_of_file)},
+                              data->obstacle);
     if (!data->function)
       return mistake("there is no function x' = f(t, x) of these equations: " + data->obstacle,
                      data->scenario->elimination.pivots().empty()
@@ -178,13 +192,11 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
       data->states.push_back({state.name, state.meaning});
     if (options.outputs && !data->values().formulas().left_out.empty())
       return mistake("the output '" + data->values().formulas().left_out[0] +
-                         "' holds what the equations are not solved for" +
-                         (data->function->minimal()
-                              ? ": in independent velocities these are multipliers and derivatives beyond accelerations"
-                              : ""),
-                     data->function->minimal() ? "take all velocities, minimal=False, for multipliers; leave out "
-                                                 "derivatives beyond accelerations"
-                                               : "leave it out");
+                         "' holds what the equations are not solved for" + not_solved_for(*data),
+                     data->function->minimal() && data->scenario->redundant.empty()
+                         ? "take all velocities, minimal=False, for multipliers; leave out derivatives beyond "
+                           "accelerations"
+                         : "leave it out");
     return Dynamics(data);
   });
 }

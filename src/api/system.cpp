@@ -45,8 +45,7 @@ std::vector<InitialValue> System::initial() const {
   const std::vector<inner::Coordinate>& q = s.model->coordinates;
   for (std::size_t a = 0; a < x.q.size(); ++a) add(q[a].name, x.q[a], x.q_origin[a]);
   for (std::size_t a = 0; a < x.qd.size(); ++a) add(q[a].name + "'", x.qd[a], x.qd_origin[a]);
-  for (std::size_t z = 0; z < x.states.size(); ++z)
-    add(s.model->states[z].name, x.states[z], x.states_origin[z]);
+  for (std::size_t z = 0; z < x.states.size(); ++z) add(s.model->states[z].name, x.states[z], x.states_origin[z]);
   return list;
 }
 

@@ -123,8 +123,7 @@ static std::string said_of_others(const std::vector<Span>& others, const Span& f
       lines.push_back(o.line);
   if (lines.empty()) return others[0].file == first.file ? "it stands in this line again" : "it stands elsewhere, too";
   std::string list;
-  for (std::size_t k = 0; k < std::min(lines.size(), kNamed); ++k)
-    list += (k ? ", " : "") + std::to_string(lines[k]);
+  for (std::size_t k = 0; k < std::min(lines.size(), kNamed); ++k) list += (k ? ", " : "") + std::to_string(lines[k]);
   return std::string(lines.size() > 1 ? "it stands in lines " : "it stands in line ") + list +
          (lines.size() > kNamed ? " and others, too" : ", too");
 }

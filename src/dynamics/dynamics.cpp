@@ -82,6 +82,7 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
   // These parameters are not free: with other values the equations have another state.
   for (const std::size_t i : parameters_of_order(*s.mechanics, s.elimination, s.system, s.structure))
     std::erase(made->free_, i);
+  for (const std::size_t i : wanted.fixed) std::erase(made->free_, i);
   const std::vector<double>& state = made->motion_start_ = {here.state.begin(), here.state.end()};
   const double t = made->start_time_ = static_cast<double>(here.t);
   made->coordinates_ = n;

@@ -29,6 +29,8 @@ class Dynamics {
   struct Choice {
     bool minimal = true;     // in independent velocities if the equations have them
     std::size_t inputs = 0;  // the number of inputs, which are the last parameters of the model (setup/inputs.h)
+    std::vector<std::size_t> fixed =
+        {};  // parameters that keep their values, because they decide which constraints hold
   };
   // Returns nullptr if these equations are no function of x, or have no solution at the start; `why` is then the
   // reason. Otherwise `why` tells why the velocities are not independent ones, a clause in words of the model; it is

@@ -209,7 +209,7 @@ class Builder {
         f_.pivots.push_back({p.row, p.column});
   }
 
-  // Leaves out formulas with other symbols: derivatives beyond those solved for. Formulas of inputs contain no input
+  // Leaves out formulas with other symbols: derivatives beyond those solved for, and undetermined multipliers. Formulas of inputs contain no input
   // and no unknown of the equations.
   void leave_out() {
     std::set<NodeId> known{f_.model->graph->time().id};
@@ -227,13 +227,21 @@ class Builder {
         break;
       }
     for (const RateFormulas::Symbols* list : {&f_.u, &f_.lead})
-      for (Expr e : list->symbols) known.insert(e.id);
+      for (Expr e : list->symbols)
+        if (!is_undetermined(e)) known.insert(e.id);
     for (std::size_t i = f_.outputs.size(); i-- > 0;)
       if (holds_others(f_.outputs[i])) {
         f_.left_out.push_back(f_.output_names[i]);
         f_.outputs.erase(f_.outputs.begin() + static_cast<std::ptrdiff_t>(i));
         f_.output_names.erase(f_.output_names.begin() + static_cast<std::ptrdiff_t>(i));
       }
+  }
+
+  // True for the multipliers of constraints that depend on one another: they follow from the motion by a choice, which
+  // these formulas do not make.
+  bool is_undetermined(Expr e) const {
+    const Node& n = e.graph->node(e.id);
+    return !s_.redundant.empty() && n.kind == Kind::multiplier && !s_.model->constraints[n.index].by;
   }
 
   Workspace& s_;
@@ -245,10 +253,11 @@ class Builder {
 
 }  // namespace
 
-std::optional<RateFormulas> independent_rates(const Scenario& scenario, const StateChoice& choice) {
+std::optional<RateFormulas> independent_rates(const Scenario& scenario, const StateChoice& choice,
+                                              const std::vector<std::size_t>& fixed) {
   Workspace own(scenario);
   std::string why;
-  const std::unique_ptr<Dynamics> function = Dynamics::make(own, choice, {}, why);
+  const std::unique_ptr<Dynamics> function = Dynamics::make(own, choice, {.fixed = fixed}, why);
   if (!function || !function->minimal()) return std::nullopt;
   return rate_formulas_of(own, *function, {}, {});
 }

@@ -16,7 +16,8 @@ RateFormulas rate_formulas_of(Workspace& scenario, const Dynamics& dynamics, std
 
 // The rates in independent velocities, with inputs replaced by their formulas. Returns nullopt if the equations have no
 // such velocities.
-std::optional<RateFormulas> independent_rates(const Scenario& scenario, const StateChoice& choice);
+std::optional<RateFormulas> independent_rates(const Scenario& scenario, const StateChoice& choice,
+                                              const std::vector<std::size_t>& fixed = {});
 
 // The formulas as functions. Many threads may call them.
 class FormulaValues {

@@ -43,6 +43,7 @@ struct EmitOptions {
   std::vector<std::pair<std::string, Expr>> outputs;  // names and values
   const RateFormulas* rates = nullptr;                // rates of independent velocities, for Python
   std::vector<std::string> of_order;                  // parameters that determine the order of the equations
+  std::vector<std::string> switching;                 // parameters that decide which constraints hold
 };
 
 // Both return the text, and throw Failure for an expression that cannot be written: an unknown function of time, a

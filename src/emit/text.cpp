@@ -255,6 +255,8 @@ std::vector<std::string> head(const System& s, const Structure& structure, const
         "reset does not project them, as a motion of anholon does.");
   for (const std::string& parameter : o.of_order)
     add("The value of " + parameter + " decides the order of the equations: another one needs a program of its own.");
+  for (const std::string& parameter : o.switching)
+    add("The value of " + parameter + " decides which constraints hold: another one needs a program of its own.");
   for (const std::string& what : m.left_out) add("Left out is " + what + ", which holds derivatives beyond lead.");
   for (std::size_t r = 0; r < model.constraints.size(); ++r)
     if (std::find(s.constraints.begin(), s.constraints.end(), r) == s.constraints.end())

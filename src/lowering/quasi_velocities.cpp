@@ -57,6 +57,13 @@ class Writer {
     return g_.jet(static_cast<std::uint32_t>(n_ + at->second), 0);
   }
   bool stands_for(const Node& n) const { return n.kind == Kind::jet && n.index >= n_; }
+  bool holds_accelerations(const Column& es) const {
+    const std::vector<NodeId> all = symbols(es);
+    return std::any_of(all.begin(), all.end(), [&](NodeId id) {
+      const Node& n = g_.node(id);
+      return n.kind == Kind::jet && n.order > 1 && !stands_for(n);
+    });
+  }
 
   // Expresses named velocities in the free ones. Returns false if a velocity is not homogeneous in them.
   bool use_names() {
@@ -118,6 +125,9 @@ class Writer {
 
   std::optional<QuasiVelocities> equations() {
     const std::size_t l = v_.free.size(), states = c_.state_rates.size();
+    const Column given_forces = put_masses(*c_.model, c_.forces), given_rates = put_masses(*c_.model, c_.state_rates);
+    if (holds_accelerations(given_forces)) return none("a force holds accelerations");
+    if (holds_accelerations(given_rates)) return none("the rate of a state holds accelerations");
     QuasiVelocities r;
     r.count = l;
     r.inertia = energy_.inertia;
@@ -134,14 +144,13 @@ class Writer {
     r.velocities = put(velocity_, used_, values);
     on_velocities_ = {qd_, r.velocities};
     Column rates;
-    for (std::size_t i = 0; i < states; ++i)
-      rates.push_back(put(put_masses(*c_.model, c_.state_rates[i]), qd_, r.velocities));
+    for (std::size_t i = 0; i < states; ++i) rates.push_back(put(given_rates[i], qd_, r.velocities));
     for (std::size_t i = 0; i < states; ++i)
       on_velocities_.first.push_back(g_.state(static_cast<std::uint32_t>(i), 1)),
           on_velocities_.second.push_back(rates[i]);
     const Rows A = gyroscopic(r.velocities);
     // Forces on the used velocities come first, because there sines and cosines combine.
-    Column forces = pullback(velocity_, put(put_masses(*c_.model, c_.forces), qd_, r.velocities), used_);
+    Column forces = pullback(velocity_, put(given_forces, qd_, r.velocities), used_);
     for (Expr& f : forces) f = tidy_(f);
     const Column Q = forces * used_by_free_ * energy_.v_by_p;
     ps.push_back(g_.one());

@@ -4,16 +4,28 @@
 
 namespace anholon {
 
-Column put_controls(const Model& model, std::span<const Expr> es) {
+// Puts the multipliers of constraints in place of the inputs that keep them.
+static Column put_servo_inputs(const Model& model, std::span<const Expr> es) {
   Graph& g = *model.graph;
-  if (model.controls.empty()) return {es.begin(), es.end()};
   return substitute(es, [&](NodeId id) {
     const Node& n = g.node(id);
     if (n.kind != Kind::control) return Expr{};
+    const std::optional<std::size_t> constraint = model.controls[n.index].constraint;
+    return constraint ? g.multiplier(static_cast<std::uint32_t>(*constraint), n.order) : Expr{};
+  });
+}
+
+// The formula of an input may hold inputs that keep constraints.
+Column put_controls(const Model& model, std::span<const Expr> es) {
+  const Graph& g = *model.graph;
+  if (model.controls.empty()) return {es.begin(), es.end()};
+  const Column put = substitute(es, [&](NodeId id) {
+    const Node n = g.node(id);
+    if (n.kind != Kind::control) return Expr{};
     const Control& u = model.controls[n.index];
-    if (u.constraint) return g.multiplier(static_cast<std::uint32_t>(*u.constraint), n.order);
     return u.value ? total_derivative(*u.value, n.order) : Expr{};
   });
+  return put_servo_inputs(model, put);
 }
 
 Column put_varying_masses(const Model& model, std::span<const Expr> es) {

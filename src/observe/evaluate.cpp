@@ -88,13 +88,14 @@ ReportedExpressions::ReportedExpressions(const Scenario& s) {
   const Model& model = *s.model;
   const Mechanics& m = *s.mechanics;
   const auto put = [&](const Column& c) { return put_masses(model, c); };
-  forces = {{"Q", add(put(m.Q))},
-            {"QR", add(put(m.QR))},
-            {"Qomega", add(put(m.Qomega))},
-            {"minus_dVO", add(put(m.minus_dVO))},
-            {"minus_dVomega", add(put(m.minus_dVomega))},
-            {"Gamma", add(put(m.Gamma))}};
+  forces = {{"Q", add(put(m.Q))}};
   if (!model.dissipation.empty()) forces.push_back({"QD", add(put(m.QD))});
+  for (const auto& [name, column] : {std::pair{"QR", &m.QR},
+                                     {"Qomega", &m.Qomega},
+                                     {"minus_dVO", &m.minus_dVO},
+                                     {"minus_dVomega", &m.minus_dVomega},
+                                     {"Gamma", &m.Gamma}})
+    forces.push_back({name, add(put(*column))});
   inertia = {"inertia_term", add(newton_left_side(m))};
   reaction = {"N", add(put(m.N))};
   const Power p = power(m);

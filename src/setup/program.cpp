@@ -31,18 +31,19 @@ EmitOptions::Start start_for_program(Workspace& s, const StateChoice& choice) {
 }  // namespace
 
 std::string program_text(const Scenario& scenario, const StateChoice& choice, ProgramLanguage language,
-                         const std::string& name, const std::string& made_by, const RateFormulas* rates) {
+                         const std::string& name, const std::string& made_by, const ProgramExtras& extras) {
   Workspace own(scenario);
   EmitOptions options;
   options.name = name;
   options.made_by = made_by;
-  options.rates = rates;
+  options.rates = extras.rates;
   options.start = start_for_program(own, choice);
   OpenSystem open = open_inputs(own);
   for (const Monitor& m : open.system.model->monitors) options.outputs.emplace_back(m.name, m.value);
   options.inputs = std::move(open.inputs);
   for (const std::size_t i : parameters_of_order(*own.mechanics, own.elimination, own.system, own.structure))
     options.of_order.push_back(own.model->parameters[i].name);
+  for (const std::size_t i : extras.switching) options.switching.push_back(own.model->parameters[i].name);
   return (language == ProgramLanguage::c ? emit_c : emit_python)(open.system, own.structure, options);
 }
 

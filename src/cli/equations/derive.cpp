@@ -7,6 +7,7 @@
 #include "cli/models/show.h"
 #include "cli/outputs.h"
 #include "cli/say.h"
+#include "contact/mode/switched_model.h"
 #include "dynamics/rate_formulas_of.h"
 #include "report/equations.h"
 #include "result/file.h"
@@ -61,9 +62,11 @@ int write_program(const DeriveCommand& o, const Reader& in, const Formulation& f
   for (const std::string& set : o.set) made_by += " --set " + set;
   try {
     const bool python = o.format == "python";
-    const auto rates = python ? independent_rates(s, choice) : std::nullopt;
+    const std::vector<std::size_t> switching = switching_parameters(*in.model, contacts(*in.names));
+    const auto rates = python ? independent_rates(s, choice, switching) : std::nullopt;
     deliver(o, program_text(s, choice, python ? ProgramLanguage::python : ProgramLanguage::c,
-                            std::filesystem::path(o.model).stem().string(), made_by, rates ? &*rates : nullptr));
+                            std::filesystem::path(o.model).stem().string(), made_by,
+                            {rates ? &*rates : nullptr, switching}));
   } catch (const Failure& failure) {
     print_diagnostic(failure.diagnostic, in.source);
     return kBadInput;

@@ -1,6 +1,7 @@
 #include "contact/mode/switched_model.h"
 
 #include <algorithm>
+#include <set>
 
 #include "tape/tape.h"
 
@@ -16,6 +17,21 @@ std::vector<bool> constraints_that_hold(const Model& model, const std::vector<Co
   std::size_t k = model.parameters.size();
   for (const Contact& c : contacts) holds.push_back(c.held && numbers[k++] > 0);
   return holds;
+}
+
+std::vector<std::size_t> switching_parameters(const Model& model, const std::vector<Contact>& contacts) {
+  std::set<std::size_t> found;
+  std::vector<Expr> open;
+  for (const Contact& c : contacts)
+    if (c.held) open.push_back(c.held->active);
+  while (!open.empty()) {
+    const Expr e = open.back();
+    open.pop_back();
+    for (const NodeId id : symbols({&e, 1}))
+      if (const Node& n = e.graph->node(id); n.kind == Kind::parameter && found.insert(n.index).second)
+        open.push_back(model.parameters[n.index].value);
+  }
+  return {found.begin(), found.end()};
 }
 
 void put_constraints_that_hold(Model& model, const std::vector<Contact>& contacts) {
