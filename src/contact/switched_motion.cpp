@@ -5,8 +5,8 @@
 
 #include "contact/joined_report.h"
 #include "contact/law/contact_dynamics.h"
-#include "contact/segment_rows.h"
 #include "contact/mode/switched_model.h"
+#include "contact/segment_rows.h"
 #include "numeric/told_time.h"
 
 namespace anholon {
