@@ -30,8 +30,8 @@ struct StateName {
 };
 
 // A function  x' = f(t, x, u, p)  with outputs  y = h(t, x, u, p).  p: the parameters of the model that do not follow from
-// others, without those whose values decide the order of the equations, such as a mass that is 0. Immutable, cheap to
-// copy, and safe to use from many threads. All numbers are in SI units.
+// others, without those whose values decide the order of the equations, such as a mass that is 0, or which constraints
+// with `active` hold. Immutable, cheap to copy, and safe to use from many threads. All numbers are in SI units.
 class ANHOLON_API Dynamics {
  public:
   // What x holds: coordinates, velocities, higher derivatives, then the model's states.

@@ -66,13 +66,14 @@ class Dynamics:
     @property
     def parameters(self) -> list[str]:
         """The entries of p: the parameters that do not follow from others, except vectors and those whose values decide the order
-        of the equations, such as a mass that is 0. Modes are entries of p, too; f does not change them, as it has no events."""
+        of the equations, such as a mass that is 0, or which constraints with ``active`` hold. Other modes are entries of p, too; f
+        does not change them, as it has no events."""
         return self._core.parameters
 
     @property
     def outputs(self) -> list[str]:
-        """The entries of y: the outputs that were asked for, or the monitors and outputs of the model. In independent velocities
-        outputs with multipliers are left out."""
+        """The entries of y: the outputs that were asked for, or the monitors and outputs of the model. Outputs with
+        multipliers are left out in independent velocities, and if constraints depend on one another."""
         return self._core.outputs
 
     @property
@@ -144,7 +145,7 @@ class Dynamics:
             fixed = next((name for name in labelled if what == "p" and name not in names and name in self.model.parameters), None)
             if fixed is not None:
                 raise KeyError(
-                    f"{fixed!r} is not in p: it is a vector, follows from other parameters, or its value decides the order of the equations; "
+                    f"{fixed!r} is not in p: it is a vector, follows from other parameters, or its value decides the order of the equations or which constraints hold; "
                     f"the model has a function for another value, model.with_({fixed}=...).dynamics()"
                 )
             given = in_order(labelled, names, usual, what)
