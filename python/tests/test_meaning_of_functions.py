@@ -89,3 +89,12 @@ def test_multipliers_of_dependent_constraints_are_left_out() -> None:
     for name in ("l1", "l2"):
         with pytest.raises(an.ModelError, match="depend on one another"):
             model.dynamics(minimal=False, outputs={"own": f"lambda.c{name[1]}"})
+
+
+def test_outputs_hold_forces_of_the_mode() -> None:
+    gears = GEARS.format(decides="mode = {gear = 2}", active="gear - 1.5") + 'monitor = {L = "lambda.v2"}'
+    model = an.loads(gears).in_mode("gear=2")
+    f, own = (model.dynamics(minimal=False, outputs=outputs) for outputs in (None, {"own": "2*lambda.v2"}))
+    np.testing.assert_allclose(2 * f.output(0, f.start), own.output(0, own.start), rtol=1e-15)
+    with pytest.raises(an.ModelError, match="no value here"):
+        an.loads(gears).in_mode("gear=1").dynamics(minimal=False, outputs={"own": "lambda.v2"})

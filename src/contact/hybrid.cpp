@@ -378,10 +378,18 @@ class HybridMotion {
       accumulation_.forget(c);
     }
     if (!any) return;
-    bodies_.stop(stops);
+    stop_at_rest(stops);
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
       if (stops[c].touch != Touch::open && bodies_.near.hardly_slips(c)) stops[c].touch = Touch::sticks;
-    bodies_.stop(stops);
+    stop_at_rest(stops);
+  }
+
+  // Stops the last velocities of what comes to rest; states whose rates hold forces get the impulses of this jump.
+  void stop_at_rest(const ContactModes& stops) {
+    ContactState before = bodies_.at;
+    const Impulses impulses = bodies_.stop(stops);
+    impact_states_.add(before, {bodies_.at.qd.begin(), bodies_.at.qd.end()}, impulses);
+    bodies_.at.states = before.states;
   }
 
   Workspace& s_;

@@ -212,7 +212,7 @@ void TouchingBodies::first_alone(std::vector<bool>& touches) const {
   for (std::size_t c = 0; c < contacts.size(); ++c) touches[c] = touches[c] && (c == first || near.gap_rate(c) == 0);
 }
 
-void TouchingBodies::stop(const ContactModes& to) {
+Impulses TouchingBodies::stop(const ContactModes& to) {
   ContactProblem p = dynamics.stop();
   const auto leave_out_dependent = [](const ContactProblem& of, ContactModes& stopped) {
     share_forces(of, stopped);
@@ -237,8 +237,13 @@ void TouchingBodies::stop(const ContactModes& to) {
       stopped[c] = {};
     }
   }
-  if (jump) add_to_velocities(jump->x);
+  Impulses impulses(contacts.size());
+  if (jump) {
+    add_to_velocities(jump->x);
+    add_impulses(p, *jump, impulses);
+  }
   dynamics.go(at);
+  return impulses;
 }
 
 void TouchingBodies::close_gaps() {

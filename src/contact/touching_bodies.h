@@ -1,6 +1,7 @@
 // The bodies of a motion with contacts where a mode of the contacts has ended: their state, and their next modes.
 #pragma once
 #include "contact/law/contact_dynamics.h"
+#include "contact/law/impact.h"
 #include "contact/law/round_off.h"
 #include "contact/surface/borders.h"
 
@@ -54,7 +55,8 @@ struct TouchingBodies {
   // do not slip. A contact that the others stop already is left out. One with a direction slips along it with friction
   // in proportion to the normal impulse, whichever sign this has: the impulse stands for the impulses still to come,
   // less the load of the rest until then (theory: contact).
-  void stop(const ContactModes& to);
+  // Returns the impulses of the jump.
+  Impulses stop(const ContactModes& to);
   // Moves what touches so that its gaps are zero, with the velocities that the modes allow there.
   void close_gaps();
   void add_to_velocities(const std::vector<long double>& jump);

@@ -151,13 +151,18 @@ bool StepEnd<N>::as_foretold(PresentStep<N>& step, const EventWatch<N>& events, 
       [&](std::size_t i) { return step.look.quadrature_made_of(i); });
 }
 
-// Like as_foretold(), at h beyond the expansion of a kernel.
+// Like as_foretold(), at h beyond the expansion of a kernel, and where a watched formula may hide something before.
 template <Number N>
 bool StepEnd<N>::shows_events(PresentStep<N>& step, const EventWatch<N>& events, const W& h) {
   if (events.empty()) return true;
-  step.load_series(h);
-  step.look.evaluate_watched();
-  return as_foretold(step, events, convert<N>(h));
+  const auto shows = [&](const W& where) {
+    step.load_series(where);
+    step.look.evaluate_watched();
+    return as_foretold(step, events, convert<N>(where));
+  };
+  find_hidden(step, h);
+  return std::all_of(hidden_.begin(), hidden_.end(), [&](const N& where) { return shows(convert<W>(where)); }) &&
+         shows(h);
 }
 
 template <Number N>

@@ -8,6 +8,18 @@
 
 namespace anholon {
 
+void add_impulses(const ContactProblem& p, const ContactSolution& of, Impulses& sum) {
+  for (std::size_t k = 0; k < p.contacts.size(); ++k) {
+    const ContactRows& rows = p.contacts[k];
+    const ContactMode& mode = of.modes[k];
+    const std::size_t c = k < sum.normal.size() ? k : *rows.under;
+    if (!rows.under) sum.normal[c] += of.normal[k];
+    for (std::size_t a = 0; a < rows.tangential.size() && mode.touch != Touch::open; ++a)
+      sum.tangential[c][a] +=
+          mode.touch == Touch::sticks ? of.friction[k][a] : -rows.friction * mode.direction[a] * of.normal[k];
+  }
+}
+
 namespace {
 
 using Jump = std::vector<long double>;
@@ -42,19 +54,6 @@ ContactProblem expansion(const ContactDynamics& dynamics, ContactProblem p, cons
   }
   p.contacts.insert(p.contacts.end(), friction.begin(), friction.end());
   return p;
-}
-
-// Adds impulses. Contacts beyond those of `sum` are the friction of the contacts that they are under.
-void add_impulses(const ContactProblem& p, const ContactSolution& of, Impulses& sum) {
-  for (std::size_t k = 0; k < p.contacts.size(); ++k) {
-    const ContactRows& rows = p.contacts[k];
-    const ContactMode& mode = of.modes[k];
-    const std::size_t c = k < sum.normal.size() ? k : *rows.under;
-    if (!rows.under) sum.normal[c] += of.normal[k];
-    for (std::size_t a = 0; a < rows.tangential.size() && mode.touch != Touch::open; ++a)
-      sum.tangential[c][a] +=
-          mode.touch == Touch::sticks ? of.friction[k][a] : -rows.friction * mode.direction[a] * of.normal[k];
-  }
 }
 
 Impact with_work(const ContactDynamics& dynamics, Jump jump, Impulses impulses) {

@@ -36,6 +36,10 @@ struct Impulses {
   std::vector<long double> normal;
   std::vector<std::array<long double, 2>> tangential;
 };
+// Adds the impulses of a solution. Contacts of the problem beyond those of `sum` are the friction of the contacts that
+// they are under.
+void add_impulses(const ContactProblem& problem, const ContactSolution& solution, Impulses& sum);
+
 struct Impact {
   std::vector<long double> jump;  // the jump of the velocities
   Impulses impulses{0};
