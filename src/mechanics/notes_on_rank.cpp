@@ -12,7 +12,9 @@ std::vector<std::string> notes_on_rank(const Model& model, const Elimination& e)
   case FullRank::here:
     break;
   case FullRank::beside:
-    notes.push_back("it is assumed that " + full + ": at the initial state, a singular one, it is lower");
+    notes.push_back("it is assumed that " + full +
+                    ": at the initial state, a singular one, it is lower, and there are more degrees of "
+                    "freedom than equations");
     break;
   case FullRank::assumed:
     notes.push_back("it is assumed that " + full + ": no state of the constraints is known at which it is");

@@ -34,30 +34,34 @@ class StatesNear {
       for (Expr q : jets(*m.model, k)) start_.back().push_back(base_(g.node(q.id)));
     }
     values_ = start_;
+    for (const Column& row : m.Phi) phi_.push_back(put_masses(*m.model, row));
   }
 
   // Returns the values of all symbols at the present state.
   PointValues values() const {
     return PointValues([this](const Node& n) {
-      return n.kind == Kind::jet && n.order < values_.size() ? values_[n.order][n.index] : base_(n);
+      if (n.kind == Kind::jet && n.order < values_.size()) return values_[n.order][n.index];
+      const bool moves = n.kind == Kind::time || (n.kind == Kind::state && n.order == 0);
+      return moves ? base_(n) + beside_ * generic_value(n, 0) : base_(n);
     });
   }
 
-  // Moves to the state that lies from the base by about `size` in a direction that depends on the number of the trial.
-  // Returns false if no state of the constraints was found there.
+  // Moves to the state that lies from the base by about `size` in a direction that depends on the number of the trial,
+  // at another time. Returns false if no state of the constraints was found there.
   bool move(int trial, double size) {
+    constexpr double kPartOfTime = 0.1;  // in this time the velocities at the base move positions by less than `size`
     values_ = start_;
+    scale_.assign(values_.size(), size);
+    for (std::size_t k = 1; k < scale_.size(); ++k) scale_[k] *= std::max(1.0, length(start_[k]));
+    double speed = 0;
+    for (Expr q : m_.qd) speed = std::max(speed, std::abs(base_(m_.graph().node(q.id))));
+    beside_ = kPartOfTime * size / (1 + speed);
     for (unsigned k = 0; k < values_.size(); ++k) {
-      std::vector<double> step = tangent(k, direction(k, trial));
-      double scale = size;
-      if (k > 0) scale *= std::max(1.0, length(start_[k]));
-      for (double& x : step) x *= scale;
-      moved_.resize(k + 1);
-      moved_[k] = length(step);
-      for (std::size_t a = 0; a < step.size(); ++a) values_[k][a] += step[a];
+      const std::vector<double> step = tangent(k, direction(k, trial));
+      for (std::size_t a = 0; a < step.size(); ++a) values_[k][a] += scale_[k] * step[a];
       const std::optional<double> corrected = satisfy(k);
       // Positions that are far from the tangent plane may belong to another branch.
-      if (!corrected || (k == 0 && *corrected > moved_[0] / 2 + kConverged * (1 + length(start_[0])))) return false;
+      if (!corrected || (k == 0 && *corrected > size / 2)) return false;
     }
     return true;
   }
@@ -71,12 +75,11 @@ class StatesNear {
     return true;
   }
 
-  // True if the constraint holds at the present state, up to a small part of its change by the last move.
+  // True if the constraint holds at the present state, up to a small part of what a move of this size may change it by.
   bool holds(std::size_t r) const {
-    constexpr double kPart = 1e-6, kFloor = 1e-8;
-    const auto k = static_cast<std::size_t>(m_.order[r]);
+    constexpr double kPart = 1e-6;
     PointValues at = values();
-    const double change = length(row(r, at)) * std::max(moved_[k], kFloor * (1 + length(values_[k])));
+    const double change = length(matrix({r}, at).data) * scale_[static_cast<std::size_t>(m_.order[r])];
     return std::abs(at(put_masses(*m_.model, m_.phi[r]))) <= kPart * change;
   }
 
@@ -88,9 +91,11 @@ class StatesNear {
     return out;
   }
 
-  std::vector<double> row(std::size_t r, PointValues& at) const {
-    const Matrix<double> phi = constraint_matrix(m_, {r}, at);
-    return phi.data;
+  Matrix<double> matrix(const Which& constraints, PointValues& at) const {
+    Matrix<double> phi(constraints.size(), m_.q.size());
+    for (std::size_t i = 0; i < phi.rows; ++i)
+      for (std::size_t a = 0; a < phi.cols; ++a) phi(i, a) = at(phi_[constraints[i]][a]);
+    return phi;
   }
 
   std::vector<double> direction(unsigned k, int trial) const {
@@ -126,7 +131,7 @@ class StatesNear {
   std::vector<double> tangent(unsigned k, std::vector<double> v) const {
     PointValues at = values();
     const Which rows = up_to(k);
-    const Matrix<double> phi = constraint_matrix(m_, rows, at);
+    const Matrix<double> phi = matrix(rows, at);
     std::vector<double> along(rows.size(), 0.0);
     for (std::size_t i = 0; i < rows.size(); ++i)
       for (std::size_t a = 0; a < v.size(); ++a) along[i] += phi(i, a) * v[a];
@@ -148,7 +153,7 @@ class StatesNear {
       PointValues at = values();
       std::vector<double> f;
       for (Expr e : lifted) f.push_back(at(e));
-      const auto x = least(constraint_matrix(m_, rows, at), f);
+      const auto x = least(matrix(rows, at), f);
       if (!x) return std::nullopt;
       for (std::size_t a = 0; a < x->size(); ++a) values_[k][a] -= (*x)[a];
       if (length(*x) > kConverged * (1 + length(values_[k]))) continue;
@@ -159,10 +164,12 @@ class StatesNear {
   }
 
   const Mechanics& m_;
+  Rows phi_;  // dphi/dq^(m) of all constraints of the model
   Which constraints_;
   std::function<double(const Node&)> base_;
   std::vector<std::vector<double>> start_, values_;  // q^(k) by k and coordinate
-  std::vector<double> moved_;                        // by k: the length of the step along the tangent plane
+  std::vector<double> scale_;                        // by k: the size of the last move
+  double beside_ = 0;                                // how far times and states have moved
 };
 
 // True if constraints hold at all states near the base that satisfy the others. A row that depends on those of others

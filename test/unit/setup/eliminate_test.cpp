@@ -77,6 +77,29 @@ TEST(Eliminate, ASingularStartLeavesNoConstraintOut) {
   EXPECT_EQ(e.full_rank, FullRank::beside);
 }
 
+// At t = 0 the rows are equal; at other times they are not.
+TEST(Eliminate, AConstraintThatFollowsAtOneTimeOnlyTakesPart) {
+  for (const char* d : {"x' + y' + t*z' = 0", "x' + y' + t*(z' + 1) = 0"}) {
+    const auto model = test::model_of(product(d, "x = 1"));
+    const Mechanics m = mechanics(*model);
+    const Elimination e = elimination_for(m, Unknowns::coordinates, {}, {});
+    EXPECT_EQ(e.constraints.size(), 2U) << d;
+    EXPECT_TRUE(e.left_out.empty()) << d;
+    EXPECT_EQ(e.full_rank, FullRank::beside) << d;
+  }
+}
+
+// A driven coordinate moves with time, and so does the manifold on which the constraint follows.
+TEST(Eliminate, AConstraintThatFollowsFromADriveIsLeftOut) {
+  std::string text = product("(x + y - 20*t)*(z + 2) = 0", "x = 1");
+  text.replace(text.find("x' + y' = 0"), 11, "x + y = 20*t");
+  const auto model = test::model_of(text);
+  const Mechanics m = mechanics(*model);
+  const Elimination e = elimination_for(m, Unknowns::coordinates, {}, {});
+  EXPECT_EQ(e.constraints, std::vector<std::size_t>{0});
+  EXPECT_EQ(e.left_out, std::vector<std::size_t>{1});
+}
+
 // Constraints that are dependent everywhere have a rank that is full, and none is noted.
 TEST(Eliminate, ConstraintsThatAreDependentEverywhereAreNotNoted) {
   const auto model = test::model_of(product("2*x' = -2*y'", "x = 1"));
