@@ -30,7 +30,8 @@ Column Elimination::pick(const Column& X, const std::vector<std::size_t>& which)
 }
 
 Elimination::Elimination(const Mechanics& M, const EliminationChoice& choice, std::shared_ptr<PointValues> at)
-    : constraints(choice.constraints), dependent(choice.dependent), mechanics_(&M), pivots_(std::move(at)) {
+    : constraints(choice.constraints), dependent(choice.dependent), left_out(choice.left_out),
+      full_rank(choice.full_rank), mechanics_(&M), pivots_(std::move(at)) {
   const Model& model = *M.model;
   for (std::size_t r : constraints) m = std::max(m, static_cast<unsigned>(M.order[r]));
   for (const QuasiVelocity& q : choice.quasi) m = std::max(m, static_cast<unsigned>(q.order));
@@ -285,9 +286,9 @@ static void for_each_expression(OnManifold& level, const ExprVisitor& f) {
 }
 
 void for_each_expression(Elimination& e, const ExprVisitor& f) {
-  auto& [m, asked, constraints, dependent, independent, phi, Phi_D_inverse, solved, free, quasi, mechanics, top, next,
-         W_inverse, g_by, pivots] = e;
-  static_cast<void>(mechanics);
+  auto& [m, asked, constraints, dependent, independent, left_out, full_rank, phi, Phi_D_inverse, solved, free, quasi,
+         mechanics, top, next, W_inverse, g_by, pivots] = e;
+  static_cast<void>(mechanics), static_cast<void>(left_out), static_cast<void>(full_rank);
   for_each_expression_of(f, m, asked, constraints, dependent, independent, phi, Phi_D_inverse, solved, free, quasi, top,
                          next, W_inverse, g_by, pivots);
 }

@@ -21,6 +21,13 @@
 
 namespace anholon {
 
+// The place at which the rank of the constraints that take part is known to be their number.
+enum class FullRank : std::uint8_t {
+  here,    // at the state near which is eliminated, or at a generic point if constraints are identically dependent
+  beside,  // the rank is lower at this state, a singular one
+  assumed  // no point of the manifold is known at which the rank is full
+};
+
 // The choice of eliminated and of free quantities.
 struct EliminationChoice {
   std::vector<std::size_t> constraints;  // the constraints that take part; they are independent
@@ -29,6 +36,8 @@ struct EliminationChoice {
   std::vector<QuasiVelocity> quasi;
   bool solve = true;  // solves the constraints, if they can be solved
   unsigned m = 0;     // the requested common order; 0: the highest order of the constraints and quasi-velocities
+  std::vector<std::size_t> left_out = {};  // constraints that depend on those that take part, on the manifold only
+  FullRank full_rank = FullRank::here;
 };
 
 // The free quantities u, n - s of them.
@@ -66,6 +75,8 @@ class Elimination {
   unsigned m = 1;      // common order of the lifted constraints, at least 1
   unsigned asked = 0;  // m, if it was requested
   std::vector<std::size_t> constraints, dependent, independent;
+  std::vector<std::size_t> left_out;  // as in the choice
+  FullRank full_rank = FullRank::here;
   Column phi;           // lifted constraints, masses substituted
   Rows Phi_D_inverse;   // inverse of dphi/dq_D^(m), s x s
   bool solved = false;  // g is known as a formula

@@ -3,6 +3,7 @@
 #include <unordered_map>
 
 #include "base/assert.h"
+#include "mechanics/notes_on_rank.h"
 #include "print/print.h"
 #include "proof/enclose.h"
 #include "proof/prove.h"
@@ -175,6 +176,7 @@ void hypotheses(const Mechanics& M, const Proof& proof, const Eliminations& elim
                                    list_of(model, e.dependent) + " are put in as the constraints give them"
                              : "the constraints are not solved: the derivatives of order " + std::to_string(e.m) +
                                    " of " + list_of(model, e.dependent) + " stand for their values on the manifold");
+  for (const std::string& n : notes_on_rank(model, e)) c.hypotheses.push_back(n);
   for (const Difference& d : proof.pivots)
     if (d.verdict != Verdict::proved) c.hypotheses.push_back(d.component + " does not vanish (not shown)");
 }

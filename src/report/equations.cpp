@@ -4,6 +4,7 @@
 
 #include "expr/normal.h"
 #include "formulation/reactions.h"
+#include "mechanics/notes_on_rank.h"
 #include "print/arrange.h"
 #include "print/print_names.h"
 
@@ -35,6 +36,9 @@ class Derive {
   }
 
   Derivation run(bool steps, const Elimination* of_reactions) {
+    if (d_.form->eliminates() || of_reactions)
+      d_.notes = notes_on_rank(*d_.model, d_.form->eliminates() ? e_ : *of_reactions);
+    for (std::size_t r : e_.left_out) d_.left_out.push_back(d_.model->constraints[r].name);
     const Equations q = d_.form->equations(m_, e_);
     if (steps) {
       forces();

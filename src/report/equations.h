@@ -24,6 +24,8 @@ struct Derivation {
   std::vector<Section> steps, reactions;
   std::vector<Line> equations, constraints, rates;  // rates: of the states
   std::vector<Expr> parts;                          // named in `names`, if the equations are printed in parts
+  std::vector<std::string> left_out;                // names of constraints that the elimination leaves out
+  std::vector<std::string> notes;                   // on the rank of the constraints
 };
 
 // Arranges expressions, each only once: many forms share equations, or have equations that are equal when they are

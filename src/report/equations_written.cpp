@@ -128,6 +128,13 @@ std::vector<Table> tables(const Derivation& d) {
   return out;
 }
 
+void write_strings(JsonWriter& j, const char* key, const std::vector<std::string>& list) {
+  if (list.empty()) return;
+  j.key(key).open_array();
+  for (const std::string& s : list) j.string(s);
+  j.close();
+}
+
 }  // namespace
 
 std::vector<Line> joined(const std::vector<Line>& lines) {
@@ -168,6 +175,7 @@ std::string as_text(const std::vector<Derivation>& list) {
     for (const Section& s : d.reactions) out += "\n", section(s);
     if (!d.parts.empty()) out += "\nwith the parts\n";
     for (const auto& [name, text] : parts(d, Format::text)) out += "  " + name + " = " + text + "\n";
+    for (const std::string& n : d.notes) out += "note: " + n + "\n";
   }
   std::string with;
   for (const auto& [name, text] : masses(list[0], Format::text)) with += "  " + name + " = " + text + "\n";
@@ -304,6 +312,8 @@ std::string as_json(const std::vector<Derivation>& list, bool as_list) {
       }
       j.close();
     }
+    write_strings(j, "left_out", d.left_out);
+    write_strings(j, "notes", d.notes);
     j.key("masses").open_object();
     for (std::size_t i = 0; i < d.model->masses.size(); ++i)
       j.key(d.names.masses[i]).string(mass_text(d, i, Format::text));

@@ -7,6 +7,13 @@
 
 namespace anholon {
 
+Matrix<double> constraint_matrix(const Mechanics& m, const std::vector<std::size_t>& constraints, PointValues& at) {
+  Matrix<double> phi(constraints.size(), m.q.size());
+  for (std::size_t i = 0; i < constraints.size(); ++i)
+    for (std::size_t a = 0; a < m.q.size(); ++a) phi(i, a) = at(put_masses(*m.model, m.Phi[constraints[i]][a]));
+  return phi;
+}
+
 namespace {
 
 // Below this part of its size a pivot counts as zero.
@@ -14,13 +21,6 @@ constexpr double kSingular = 1e-9;
 
 // Returns a value in (0.6, 1.4) for a symbol whose value is not known.
 double generic(const Node& n) { return 0.6 + 0.8 * generic_value(n, 0); }
-
-Matrix<double> constraint_matrix(const Mechanics& m, const std::vector<std::size_t>& constraints, PointValues& at) {
-  Matrix<double> phi(constraints.size(), m.q.size());
-  for (std::size_t i = 0; i < constraints.size(); ++i)
-    for (std::size_t a = 0; a < m.q.size(); ++a) phi(i, a) = at(put_masses(*m.model, m.Phi[constraints[i]][a]));
-  return phi;
-}
 
 std::string list_of(const Model& model, const std::vector<std::size_t>& which) {
   std::string list;
@@ -137,15 +137,20 @@ std::vector<QuasiVelocity> quasi_velocities(const Mechanics& m, const std::vecto
 
 }  // namespace
 
-PointValues values_near(const Model& model, const std::vector<double>& parameters, const InitialState<double>& state) {
+std::function<double(const Node&)> symbol_near(const Model& model, const std::vector<double>& parameters,
+                                               const InitialState<double>& state) {
   // Varying masses need some positive value for the choice of pivots.
   const bool known = state.q.size() == model.coordinates.size();
-  return PointValues([parameters, state, known](const Node& n) {
+  return [parameters, state, known](const Node& n) {
     if (n.kind == Kind::parameter && n.index < parameters.size()) return parameters[n.index];
     if (known && n.kind == Kind::time) return state.t;
     if (const double* value = n.kind == Kind::jet || n.kind == Kind::state ? state.value(n) : nullptr) return *value;
     return generic(n);
-  });
+  };
+}
+
+PointValues values_near(const Model& model, const std::vector<double>& parameters, const InitialState<double>& state) {
+  return PointValues(symbol_near(model, parameters, state));
 }
 
 EliminationChoice choose_elimination(const Mechanics& m, const std::vector<std::size_t>& constraints, Unknowns unknowns,

@@ -9,6 +9,13 @@ namespace anholon {
 // Returns values of symbols at the state; values that the state lacks (higher derivatives, multipliers) are
 // pseudo-random.
 PointValues values_near(const Model& model, const std::vector<double>& parameters, const InitialState<double>& state);
+// Returns the function behind `values_near`.
+std::function<double(const Node&)> symbol_near(const Model& model, const std::vector<double>& parameters,
+                                               const InitialState<double>& state);
+
+// Returns dphi/dq^(m) of these constraints.
+Matrix<double> constraint_matrix(const Mechanics& mechanics, const std::vector<std::size_t>& constraints,
+                                 PointValues& at);
 
 // Returns the constraints that are independent at the point; at a singular state, those that are independent elsewhere.
 std::vector<std::size_t> independent_rows(const Mechanics& mechanics, const std::vector<std::size_t>& constraints,

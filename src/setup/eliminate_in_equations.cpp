@@ -1,6 +1,6 @@
 // Eliminations for equations that are derived and compared, but not integrated.
 #include "formulation/operators.h"
-#include "setup/eliminate.h"
+#include "setup/constraints_of_equations.h"
 #include "setup/scenario.h"
 
 namespace anholon {
@@ -33,7 +33,10 @@ static Elimination elimination_of(const Mechanics& m, const std::vector<std::siz
     if (!consistent_state(InitialProblem<double>{&m, parameters, overrides, {}}, state).ok()) state = {};
   if (!state.q.empty() && highest_order(m) >= 2) add_accelerations(model, overrides, state);
   const auto at = std::make_shared<PointValues>(values_near(model, parameters, state));
-  EliminationChoice choice = choose_elimination(m, independent_rows(m, all, *at), unknowns, wanted, *at);
+  ConstraintsOfEquations constraints = constraints_of_equations(m, all, parameters, state);
+  EliminationChoice choice = choose_elimination(m, constraints.taken, unknowns, wanted, *at);
+  choice.left_out = std::move(constraints.left_out);
+  choice.full_rank = constraints.full_rank;
   choice.solve = solve;
   choice.m = order;
   return Elimination(m, choice, at);

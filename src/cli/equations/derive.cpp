@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "cli/contacts.h"
 #include "cli/input.h"
@@ -131,6 +132,12 @@ int derive(const DeriveCommand& asked) {
     }
     list.push_back(derivation(m, *f, e, arranger, o.steps, of_reactions));
   }
+  // The text has the notes itself.
+  const bool is_text = !o.json && o.format == "text";
+  std::set<std::string> told;
+  for (const Derivation& d : list)
+    for (const std::string& n : d.notes)
+      if (!is_text && !o.quiet && told.insert(n).second) say(stderr, "note: %s\n", n.c_str());
   const std::string text = o.json || o.format == "json" ? as_json(list, all)
                            : o.format == "latex"        ? as_latex(list)
                            : o.format == "mathml"       ? as_mathml(list)

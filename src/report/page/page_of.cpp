@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/stop.h"
+#include "mechanics/notes_on_rank.h"
 #include "modelfile/hash.h"
 #include "observe/rows/quantity_units.h"
 #include "proof/checker/verify.h"
@@ -69,7 +70,10 @@ Derivation derived(const Mechanics& m, const Formulation& f, const Elimination& 
 std::string eliminated(const Elimination& e, const Model& model) {
   std::string list;
   for (std::size_t k : e.dependent) list += (list.empty() ? "" : ", ") + model.coordinates[k].name;
-  return list.empty() ? "" : "The constraints are solved for derivatives of " + list + ".";
+  if (list.empty()) return "";
+  std::string text = "The constraints are solved for derivatives of " + list + ".";
+  for (const std::string& n : notes_on_rank(model, e)) text += " Note: " + n + ".";
+  return text;
 }
 
 // The equations of the page; returns the number of nodes of the first ones.
