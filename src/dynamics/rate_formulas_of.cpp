@@ -13,6 +13,7 @@
 #include "lowering/velocity_algebra.h"
 #include "numeric/linear.h"
 #include "program/sparse_lu.h"
+#include "setup/ends_of_tables.h"
 
 namespace anholon {
 
@@ -259,11 +260,13 @@ std::optional<RateFormulas> independent_rates(const Scenario& scenario, const St
   std::string why;
   const std::unique_ptr<Dynamics> function = Dynamics::make(own, choice, {.fixed = fixed}, why);
   if (!function || !function->minimal()) return std::nullopt;
-  return rate_formulas_of(own, *function, {}, {});
+  Workspace formulas(scenario);
+  return rate_formulas_of(formulas, *function, {}, {});
 }
 
 RateFormulas rate_formulas_of(Workspace& s, const Dynamics& dynamics, std::span<const NodeId> input_formulas,
                               std::span<const NodeId> open) {
+  put_ends_of_tables(s);
   std::vector<NodeId> both(input_formulas.begin(), input_formulas.end());
   both.insert(both.end(), open.begin(), open.end());
   return Builder(s, dynamics, both).run();
