@@ -70,7 +70,7 @@ def without_mask(values: Any) -> Any:
 
     if not isinstance(values, np.ma.MaskedArray) or values.dtype.kind not in "fiub":
         return values
-    return values.astype(np.float64).filled(np.nan)
+    return np.where(np.ma.getmaskarray(values), np.nan, np.ma.getdata(values).astype(np.float64))
 
 
 def numbers_of(name: str, values: object) -> Array:

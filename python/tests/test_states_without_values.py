@@ -48,9 +48,9 @@ def test_casadi_refuses_values_and_derivatives_of_a_singular_state() -> None:
     f = an.load("double-pendulum-cartesian").dynamics(minimal=False)
     g, z = f.casadi(), np.zeros(len(f.states))
     jacobian = g.jacobian()
-    for call in (lambda: g(0, z, [], f.p0), lambda: jacobian(0, z, [], f.p0, 0, 0)):
+    for function, outputs in ((g, []), (jacobian, [0, 0])):
         with pytest.raises(RuntimeError):
-            call()
+            function(0, z, [], f.p0, *outputs)
     assert np.isnan(f.jac(0, z)).all()
 
 
@@ -107,6 +107,14 @@ def test_a_table_that_must_not_be_left_has_no_value_outside(fit: str, minimal: b
     pytest.importorskip("casadi")
     for h in (f.casadi(), f.formulas.casadi()):
         assert list(np.isnan([float(h(0, x[:, k], [], f.p0)[0][1]) for k in range(5)])) == outside
+
+
+def test_inputs_by_a_table_have_no_value_outside() -> None:
+    text = TABLE.replace("FIT", "spline").replace('x = "w(x)"}', 'x = "F"}').replace("particle =", 'input.F = "w(x)"\nparticle =')
+    f = an.loads(text).dynamics(inputs=True)
+    assert f.input(0, [2, 0])[0] == pytest.approx(4) and np.isnan(f.input(0, [2.1, 0])[0])
+    assert np.isnan(f(0, [2.1, 0.3])[1]) and f(0, [2.1, 0.3], {"F": 1})[1] == 1
+    assert np.isnan(f.formulas.numpy()(0, [2.1, 0.3])[0][1])
 
 
 def test_programs_have_no_value_of_a_table_that_is_left() -> None:

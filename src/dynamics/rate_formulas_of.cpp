@@ -24,10 +24,10 @@ constexpr double kAround = 0.3;  // in coordinates and velocities
 class Builder {
  public:
   // `input_formulas`: first with all inputs replaced by their formulas, then with the parameters that are inputs.
-  Builder(Workspace& s, const Dynamics& of, const std::vector<NodeId>& input_formulas)
+  Builder(Workspace& s, const Dynamics& of, const Column& input_formulas)
       : s_(s), of_(of), motion_(emit::motion_between_events(s.system, s.structure, {})) {
     const Model& model = *s.model;
-    for (const NodeId id : input_formulas) input_formulas_.push_back(put_masses(model, Expr{model.graph.get(), id}));
+    for (const Expr e : input_formulas) input_formulas_.push_back(put_masses(model, e));
     for (const Monitor& m : model.monitors) {
       f_.output_names.push_back(m.name);
       f_.outputs.push_back(put_masses(model, m.value));
@@ -266,9 +266,11 @@ std::optional<RateFormulas> independent_rates(const Scenario& scenario, const St
 
 RateFormulas rate_formulas_of(Workspace& s, const Dynamics& dynamics, std::span<const NodeId> input_formulas,
                               std::span<const NodeId> open) {
+  Column both;
+  for (const std::span<const NodeId> list : {input_formulas, open})
+    for (const NodeId id : list) both.push_back({s.model->graph.get(), id});
+  both = with_ends_of_tables(*s.model, both);
   put_ends_of_tables(s);
-  std::vector<NodeId> both(input_formulas.begin(), input_formulas.end());
-  both.insert(both.end(), open.begin(), open.end());
   return Builder(s, dynamics, both).run();
 }
 

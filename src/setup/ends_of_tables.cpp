@@ -21,24 +21,27 @@ static Expr with_ends(Graph& g, NodeId id, const std::set<NodeId>& bounds, Expr 
   return value + end;
 }
 
-void put_ends_of_tables(Workspace& s) {
-  if (s.model->bounds.empty()) return;
+Column with_ends_of_tables(const Model& model, const Column& es) {
   std::set<NodeId> bounds;
-  for (const Bound& b : s.model->bounds) bounds.insert(b.inside.id);
-  Column all;
-  for_each_expression(s, [&](Expr& e) {
-    if (e.graph) all.push_back(e);
-  });
+  for (const Bound& b : model.bounds) bounds.insert(b.inside.id);
   std::unordered_map<NodeId, Expr> replacement;
-  for (const NodeId id : reachable(all)) {
-    Graph& g = s.graph();
+  for (const NodeId id : bounds.empty() ? std::vector<NodeId>() : reachable(es)) {
+    Graph& g = *model.graph;
     if (g.node(id).kind != Kind::lookup || g.step_function(g.node(id).index).power < 0) continue;
     const Expr argument{&g, g.terms(id)[0].node};
     if (const Expr e = with_ends(g, id, bounds, replace_nodes({&argument, 1}, replacement)[0]); e.graph)
       replacement.emplace(id, e);
   }
-  if (replacement.empty()) return;
-  const Column put = replace_nodes(all, replacement);
+  return replacement.empty() ? es : replace_nodes(es, replacement);
+}
+
+void put_ends_of_tables(Workspace& s) {
+  if (s.model->bounds.empty()) return;
+  Column all;
+  for_each_expression(s, [&](Expr& e) {
+    if (e.graph) all.push_back(e);
+  });
+  const Column put = with_ends_of_tables(*s.model, all);
   std::size_t next = 0;
   for_each_expression(s, [&](Expr& e) {
     if (e.graph) e = put[next++];

@@ -8,7 +8,9 @@
 
 namespace anholon {
 
-// Replaces the coefficients of these tables (Model::bounds) in all expressions of the workspace.
+// Returns expressions in the graph of the model in which the coefficients of these tables (Model::bounds) are replaced.
+Column with_ends_of_tables(const Model& model, const Column& es);
+// Replaces the coefficients in all expressions of the workspace.
 void put_ends_of_tables(Workspace& workspace);
 
 }  // namespace anholon
