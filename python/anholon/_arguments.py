@@ -64,10 +64,20 @@ def number_of(name: str, value: object) -> float:
     return float(value)
 
 
-def numbers_of(name: str, values: object) -> Array:
-    """Returns the values as an array of float64. Raises TypeError if one of them is no number."""
+def without_mask(values: Any) -> Any:
+    """Returns a masked array of NumPy as an array of float64 in which masked entries are NaN, and all else as it is."""
     import numpy as np
 
+    if not isinstance(values, np.ma.MaskedArray) or values.dtype.kind not in "fiub":
+        return values
+    return np.where(np.ma.getmaskarray(values), np.nan, np.ma.getdata(values).astype(np.float64))
+
+
+def numbers_of(name: str, values: object) -> Array:
+    """Returns the values as an array of float64, in which masked entries are NaN. Raises TypeError if one of them is no number."""
+    import numpy as np
+
+    values = without_mask(values)
     if values is None or isinstance(values, (str, Mapping)):
         raise TypeError(f"{name} is a number or an array of numbers, not {'None' if values is None else f'a {type(values).__name__}'}")
     if not isinstance(values, np.ndarray) or values.dtype.kind not in "fiub":

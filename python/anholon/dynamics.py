@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._arguments import States, Values, array_of_values, in_order, labelled_values, number_of, numbers_of, states_of, takes_numbers, time_of
+from ._c_names import refuse_c_name
 from ._errors import ModelError
 from ._names import by_spelled_names, ByName
 from ._torch import torch_function
@@ -162,7 +163,8 @@ class Dynamics:
             p: parameters, shape (parameters,), or (parameters, …) for each state; those of the model if it is None.
             out: an array of float64 of the shape of x, in any layout, for the result; a new one if it is None.
 
-        Rates are NaN where the equations have no solution. The rates of a state have the same bits in every batch.
+        Rates are NaN where the equations have no solution. Masked entries of an array of NumPy count as NaN. The rates of a state
+        have the same bits in every batch.
 
         Raises:
             TypeError: t is not a number, or `out` is not an array of float64.
@@ -273,8 +275,9 @@ class Dynamics:
                 (rows, parameters, …).
             of: "x'" for the rates, "y" for the outputs.
 
-        Derivatives are NaN where the equations have no solution, and where a formula has no derivative: at a kink or a jump of
-        abs, min, max, sign, piecewise or a table. Those of a state have the same bits in every batch.
+        Derivatives are NaN where the equations have no solution, in the row of a formula without a value, such as log(x) for x < 0, and
+        where a formula has no derivative: at a kink or a jump of abs, min, max, sign, piecewise or a table. Those of a state have
+        the same bits in every batch.
 
         Raises:
             ValueError: a shape does not fit, or `by` or `of` is another word.
@@ -388,8 +391,10 @@ class Dynamics:
         ``name``, (t, x, u, p) -> (dx, y), with the sparse Jacobian ``jac_name``. CasADi and acados load the compiled file.
 
         Raises:
-            ModelError: the equations are not :attr:`linear`.
+            ModelError: the equations are not :attr:`linear`, or `name` is no name of a function in C: it has letters, digits and _,
+                begins with a letter, and is no word of C or of its standard library.
         """
+        refuse_c_name(name)
         if not self.linear:
             raise ModelError(NOT_LINEAR)
         return self._core.source(True, name)
@@ -400,7 +405,7 @@ class Dynamics:
         ``f.formulas.casadi()`` returns a function of CasADi's own expressions, which have second derivatives, too.
 
         Raises:
-            ModelError: there is no C compiler.
+            ModelError: there is no C compiler, or `name` is no name of a function in C, as for :meth:`c_code`.
         """
         import casadi
 

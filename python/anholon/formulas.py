@@ -12,6 +12,7 @@ import tempfile
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ._arguments import without_mask
 from ._errors import ModelError
 
 if TYPE_CHECKING:
@@ -195,8 +196,7 @@ class Formulas:
             return np.moveaxis(solved(a.reshape(-1, n, n), b.reshape(-1, n, 1)).reshape(*b.shape[:-1]), -1, 0)
 
         def f(t: Any, x: Any, u: Any = None, p: Any = None) -> Any:
-            x = np.asarray(x, dtype=float)
-            u, p = (values if values is None else np.asarray(values, dtype=float) for values in (u, p))
+            x, u, p = (values if values is None else np.asarray(without_mask(values), dtype=float) for values in (x, u, p))
             with np.errstate(all="ignore"):
                 u, p = self._completed(np, t, x, u, p)
                 rates, outputs = self.evaluate(np, solve, t, x, u, p)
@@ -222,6 +222,7 @@ class Formulas:
             return jnp.stack([jnp.broadcast_to(row, x.shape[1:]) for row in rows]) if rows else jnp.empty((0, *x.shape[1:]))
 
         def f(t: Any, x: Any, u: Any = None, p: Any = None) -> Any:
+            x, u, p = (without_mask(values) for values in (x, u, p))
             x = jnp.asarray(x)
 
             def solve(matrix: list[list[Any]], right: list[Any]) -> Any:
@@ -307,7 +308,7 @@ class SymPyRates:
         def choose(condition: Any, a: Any, b: Any) -> Any:
             return sympy.Piecewise((a, condition), (b, True))
 
-        library = _Library(sympy, _SHORT | {"abs": "Abs"}, choose)
+        library = _Library(sympy, _SHORT | {"abs": "Abs", "power": "Pow"}, choose)
         given = (library, self.t, self.x, self.u, self.p)
         self.matrix: Any = None
         self.right: Any = None

@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <limits>
-#include <mutex>
+#include <stdexcept>
 
-#include "api/data.h"
+#include "api/dynamics_data.h"
 #include "contact/mode/switched_model.h"
-#include "dynamics/pieces.h"
-#include "dynamics/rate_formulas_of.h"
-#include "model/exponents.h"
 #include "setup/chosen_outputs.h"
 #include "setup/inputs.h"
 
 namespace anholon::v1 {
 
-constexpr std::size_t kStatesAtOnce = 64;  // states that one thread takes at once, for outputs and derivatives
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // Calls f(), which computes these numbers. If a StopRequest ends f, sets the numbers to NaN if the caller asks for NaN;
 // throws on otherwise.
@@ -27,111 +24,79 @@ static void or_stopped(std::span<double> numbers, const Dynamics::Given& given, 
   }
 }
 
-struct Dynamics::Data {
-  System system;
-  inner::Scenario opened;               // a scenario with outputs of its own, or with inputs as parameters
-  const inner::Scenario* scenario;      // that of the system, or the opened one
-  std::vector<std::string> inputs;      // names
-  std::vector<inner::NodeId> formulas;  // formulas of the inputs
-  std::vector<inner::NodeId> open;      // the same, in terms of the parameters that are inputs
-  std::unique_ptr<const inner::Dynamics> function;
-  std::string obstacle;  // why there are no independent velocities
-  std::vector<StateName> states;
+// Returns the model with the outputs that are asked for. Throws Failure.
+static Result<std::shared_ptr<const inner::Model>> model_of(const Dynamics::Data& data) {
+  const Model::Data& of = *data.system.data().model;
+  if (!data.options.outputs) return of.model;
+  inner::Diagnostics diagnostics;
+  const auto open = of.open_again(diagnostics);
+  if (!open) return error_of(diagnostics, of.source);
+  std::vector<inner::ChosenOutput> outputs;
+  for (const DynamicsOptions::Output& o : *data.options.outputs) outputs.push_back({o.name, o.formula});
+  return inner::with_outputs(*open, outputs);
+}
 
-  // Returns the formulas, which are made at the first call.
-  const inner::FormulaValues& values() const {
-    std::call_once(once_, [&] {
-      inner::Workspace own(*scenario);
-      values_ = std::make_unique<const inner::FormulaValues>(inner::rate_formulas_of(own, *function, formulas, open));
-    });
-    return *values_;
+// Prepares a system of whose model exponents alone are others than in a system that has a start: if exponents that are
+// no numbers leave it without one, the structure and the start are those of the other system.
+static std::optional<Error> prepared(std::shared_ptr<const inner::Model> model, const std::string& form,
+                                     const inner::StateChoice& choice, const inner::Scenario* like,
+                                     inner::Scenario& scenario) {
+  const inner::Outcome o = make_system(std::move(model), form, choice, scenario);
+  if (o.ok()) return std::nullopt;
+  if (!like || scenario.system.variable_names != like->system.variable_names ||
+      scenario.independent != like->independent)
+    return error_of(o);
+  scenario.structure = like->structure;
+  scenario.state = like->state;
+  return std::nullopt;
+}
+
+// Makes the scenario of a function. Parameters have the values data.put_in, and whole exponents that follow from them
+// alone are numbers. `like`: the function for other exponents; nullptr if the model's own ones are put in. Throws
+// Failure.
+static std::optional<Error> open_scenario(Dynamics::Data& data, const Dynamics::Data* like) {
+  const System::Data& of = data.system.data();
+  const std::string form = of.scenario.system.form->name;
+  inner::StateChoice choice = of.choice;
+  auto model = model_of(data);
+  if (!model) return model.error();
+  if (like) {
+    choice.open_parameters = like->exponents.others(data.put_in);
+    *model = inner::with_values(**model, data.put_in);
+  } else {
+    data.exponents = inner::ExponentValues(**model);
   }
-
-  // The states of one call: number i of state k is at i * count + k.
-  struct Batch {
-    double t;
-    std::span<const double> x;
-    std::size_t count;
-    const Dynamics::Given& given;
-    // Returns the inputs or parameters of state k, of which there are `size`; if `all` holds no more than `size`
-    // numbers, all states share them.
-    std::vector<double> of_state(std::span<const double> all, std::size_t size, std::size_t k) const {
-      if (all.size() <= size) return {all.begin(), all.end()};
-      std::vector<double> some(size);
-      for (std::size_t i = 0; i < size; ++i) some[i] = all[i * count + k];
-      return some;
-    }
-  };
-
-  // The points of some states, with their parameters and the leading derivatives.
-  struct Points {
-    std::vector<std::vector<double>> x, parameters;
-    std::vector<double> lead;
-    std::vector<inner::FormulaPoint> at;
-  };
-  // Returns the points of the states from..to of a batch.
-  Points points(const Batch& batch, std::size_t from, std::size_t to, bool with_lead) const {
-    const std::size_t n = states.size(), some = to - from;
-    Points out;
-    std::vector<double> x_of(n * some), u_of(inputs.size() * some), p_of(batch.given.p.empty() ? 0 : p_size() * some);
-    for (std::size_t k = from; k < to; ++k) {
-      std::vector<double> x(n);
-      for (std::size_t i = 0; i < n; ++i) x_of[i * some + k - from] = x[i] = batch.x[i * batch.count + k];
-      const std::vector<double> p = batch.of_state(batch.given.p, p_size(), k);
-      const std::vector<double> u = given_inputs(batch.t, x, {batch.of_state(batch.given.u, inputs.size(), k), p});
-      for (std::size_t i = 0; i < u.size(); ++i) u_of[i * some + k - from] = u[i];
-      for (std::size_t i = 0; i < p.size(); ++i) p_of[i * some + k - from] = p[i];
-      std::vector<double> all;
-      for (const long double value : function->parameters({u, p}, 1, 0)) all.push_back(static_cast<double>(value));
-      out.x.push_back(std::move(x)), out.parameters.push_back(std::move(all));
-    }
-    std::size_t unknowns = 0;
-    if (with_lead && !function->minimal()) {
-      const bool common = batch.given.u.size() == inputs.size() && batch.given.p.size() <= p_size();
-      out.lead = function->leading(batch.t, x_of.data(), some,
-                                   common ? inner::InputsAndParameters{batch.given.u, batch.given.p}
-                                          : inner::InputsAndParameters{u_of, p_of});
-      unknowns = out.lead.size() / some;
-    }
-    for (std::size_t k = 0; k < some; ++k)
-      out.at.push_back({batch.t, out.x[k], out.parameters[k], std::span(out.lead).subspan(k * unknowns, unknowns)});
-    return out;
+  if (like || data.options.outputs) {
+    if (const auto fault = prepared(*model, form, choice, like ? like->scenario : nullptr, data.opened)) return fault;
+    data.scenario = &data.opened;
   }
-  // Returns the inputs u as given, or by the formulas of the model if none are given.
-  std::vector<double> given_inputs(double t, const std::vector<double>& x, const Given& given) const {
-    if (!given.u.empty() || inputs.empty()) return {given.u.begin(), given.u.end()};
-    return values().inputs({t, x, parameters(given.p), {}});
-  }
-  std::size_t p_size() const { return function->free_parameters().size(); }
-  // Returns the values of all parameters of the model.
-  std::vector<double> parameters(std::span<const double> p) const {
-    std::vector<double> all;
-    for (const long double value : function->parameters({{}, p}, 1, 0)) all.push_back(static_cast<double>(value));
-    return all;
-  }
+  if (!data.options.inputs && data.options.input_names.empty()) return std::nullopt;
+  const inner::InputsAsParameters inputs = inner::inputs_as_parameters(*data.scenario, data.options.input_names);
+  if (data.options.outputs && !inputs.left_out.empty())
+    return mistake("the output '" + inputs.left_out[0] + "' holds the rate of an input, which is no argument",
+                   "leave the output out, or the input among the arguments");
+  data.inputs = inputs.names, data.formulas = inputs.formulas, data.open = inputs.open_formulas;
+  choice.open_parameters.reset();  // the exponents that remain are no numbers
+  inner::Scenario opened;
+  if (const auto fault = prepared(inputs.model, form, choice, like ? like->scenario : nullptr, opened)) return fault;
+  data.opened = std::move(opened);
+  data.scenario = &data.opened;
+  return std::nullopt;
+}
 
-  void rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates, const Given& given) const;
-
-  // Calls f(first, points) with the points of pieces of a batch, on several threads if there are many. The numbers of a
-  // state do not depend on the other states.
-  template <class F>
-  void in_points(const Batch& batch, bool with_lead, const F& f) const {
-    values();
-    inner::in_pieces(batch.count, kStatesAtOnce, [&](const inner::NextPiece& next) {
-      while (const std::optional<std::size_t> from = next()) {
-        const Points some = points(batch, *from, std::min(batch.count, *from + kStatesAtOnce), with_lead);
-        f(*from, std::span<const inner::FormulaPoint>(some.at));
-      }
-    });
-  }
-
- private:
-  mutable std::once_flag once_;
-  mutable std::unique_ptr<const inner::FormulaValues> values_;
-
- public:
-  explicit Data(System of) : system(std::move(of)), scenario(&system.data().scenario) {}
-};
+// Makes the function of the scenario. Returns false if there is none; data.obstacle tells why.
+static bool make_function(Dynamics::Data& data) {
+  inner::Workspace s(*data.scenario);
+  inner::StateChoice choice = data.system.data().choice;
+  choice.open_parameters.reset();
+  const std::vector<std::size_t> fixed =
+      inner::switching_parameters(*data.scenario->model, data.system.data().model->contacts_of_file);
+  data.function = inner::Dynamics::make(s, choice, {data.options.minimal, data.inputs.size(), fixed}, data.obstacle);
+  if (!data.function) return false;
+  for (const inner::Dynamics::State& state : data.function->states())
+    data.states.push_back({state.name, state.meaning});
+  return true;
+}
 
 // Says what the equations are not solved for: a clause that follows a colon; empty if it is clear.
 static std::string not_solved_for(const Dynamics::Data& data) {
@@ -146,50 +111,14 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<Dynamics> {
     of.model->without_contacts("dynamics");
-    auto data = std::make_shared<Dynamics::Data>(system);
-    const std::string form = of.scenario.system.form->name;
-    inner::StateChoice choice = of.choice;
-    choice.open_parameters.reset();  // the caller gives their values
-    if (inner::any_exponents(*of.model->model)) {
-      if (const inner::Outcome o = make_system(of.model->model, form, choice, data->opened); !o.ok())
-        return error_of(o);
-      data->scenario = &data->opened;
-    }
-    if (options.outputs) {
-      inner::Diagnostics diagnostics;
-      const auto open = of.model->open_again(diagnostics);
-      if (!open) return error_of(diagnostics, of.model->source);
-      std::vector<inner::ChosenOutput> outputs;
-      for (const DynamicsOptions::Output& o : *options.outputs) outputs.push_back({o.name, o.formula});
-      if (const inner::Outcome o = make_system(inner::with_outputs(*open, outputs), form, choice, data->opened);
-          !o.ok())
-        return error_of(o);
-      data->scenario = &data->opened;
-    }
-    if (options.inputs || !options.input_names.empty()) {
-      const inner::InputsAsParameters inputs = inner::inputs_as_parameters(*data->scenario, options.input_names);
-      if (options.outputs && !inputs.left_out.empty())
-        return mistake("the output '" + inputs.left_out[0] + "' holds the rate of an input, which is no argument",
-                       "leave the output out, or the input among the arguments");
-      data->inputs = inputs.names, data->formulas = inputs.formulas, data->open = inputs.open_formulas;
-      inner::Scenario opened;
-      if (const inner::Outcome o = make_system(inputs.model, form, choice, opened); !o.ok()) return error_of(o);
-      data->opened = std::move(opened);
-      data->scenario = &data->opened;
-    }
-    inner::Workspace s(*data->scenario);
-    data->function =
-        inner::Dynamics::make(s, choice,
-                              {options.minimal, data->inputs.size(),
-                               inner::switching_parameters(*data->scenario->model, of.model->contacts_of_file)},
-                              data->obstacle);
-    if (!data->function)
+    auto data = std::make_shared<Dynamics::Data>(system, options);
+    if (const auto fault = open_scenario(*data, nullptr)) return *fault;
+    if (!make_function(*data))
       return mistake("there is no function x' = f(t, x) of these equations: " + data->obstacle,
                      data->scenario->elimination.pivots().empty()
                          ? "another start may have one: give other initial values, in Python dynamics(initial={…})"
                          : "simulate integrates them all the same");
-    for (const inner::Dynamics::State& state : data->function->states())
-      data->states.push_back({state.name, state.meaning});
+    data->put_in = data->exponents.whole(data->parameters({}));
     if (options.outputs && !data->values().formulas().left_out.empty())
       return mistake("the output '" + data->values().formulas().left_out[0] +
                          "' holds what the equations are not solved for" + not_solved_for(*data),
@@ -199,6 +128,55 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
                          : "leave it out");
     return Dynamics(data);
   });
+}
+
+std::shared_ptr<const Dynamics::Data>
+Dynamics::Data::with_exponents(const inner::ExponentValues::Values& values) const {
+  auto made = std::make_shared<Data>(system, options);
+  made->put_in = values;
+  try {
+    if (open_scenario(*made, this) || !make_function(*made)) return nullptr;
+  } catch (const inner::Failure&) {
+    return nullptr;
+  }
+  const auto same = [](const StateName& a, const StateName& b) { return a.name == b.name && a.meaning == b.meaning; };
+  const bool fits = std::equal(states.begin(), states.end(), made->states.begin(), made->states.end(), same) &&
+                    made->function->free_parameters() == function->free_parameters() && made->inputs == inputs;
+  return fits ? made : nullptr;
+}
+
+const Dynamics::Data* Dynamics::Data::at(std::span<const double> p) const {
+  if (!exponents.any() || p.empty()) return this;
+  const inner::ExponentValues::Values wanted = exponents.whole(parameters(p));
+  const Data* found = for_exponents(wanted);
+  return found || wanted.empty() ? found : for_exponents({});
+}
+
+const Dynamics::Data* Dynamics::Data::for_exponents(const inner::ExponentValues::Values& wanted) const {
+  if (wanted == put_in) return this;
+  const std::lock_guard lock(mutex_);
+  const auto known = others_.find(wanted);
+  if (known != others_.end()) return known->second.get();
+  if (others_.size() >= kMostExponents && !wanted.empty()) return nullptr;
+  return others_.emplace(wanted, with_exponents(wanted)).first->second.get();
+}
+
+std::string
+Dynamics::Data::text_with_exponents(const std::function<std::string(const inner::RateFormulas&)>& text) const {
+  const std::lock_guard lock(mutex_);
+  if (!with_exponents_) {
+    Data made(system, options);
+    bool fails = true;
+    try {
+      fails = open_scenario(made, this).has_value();
+    } catch (const inner::Failure&) {
+    }
+    if (fails) throw std::runtime_error("formulas with exponents that are parameters have no value at the start");
+    inner::Workspace own(*made.scenario);
+    with_exponents_ =
+        std::make_unique<inner::RateFormulas>(inner::rate_formulas_of(own, *function, made.formulas, made.open));
+  }
+  return text(*with_exponents_);
 }
 
 const std::vector<StateName>& Dynamics::states() const { return data_->states; }
@@ -230,7 +208,13 @@ std::vector<double> Dynamics::start_inputs() const {
 
 void Dynamics::rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates,
                      const Given& given) const {
-  or_stopped(rates, given, [&] { data_->rates(t, x, count, rates, given); });
+  or_stopped(rates, given, [&] {
+    if (!data_->exponents.any()) return data_->rates(t, x, count, rates, given);
+    data_->by_exponents({t, x, count, given}, data_->states.size(), rates,
+                        [](const Data& data, const Data::Batch& batch, std::span<double> out) {
+                          data.rates(batch.t, batch.x, batch.count, out, batch.given);
+                        });
+  });
 }
 
 void Dynamics::Data::rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates,
@@ -255,26 +239,30 @@ void Dynamics::Data::rates(double t, std::span<const double> x, std::size_t coun
 }
 
 std::vector<double> Dynamics::inputs(double t, const std::vector<double>& x, std::span<const double> p) const {
-  return data_->given_inputs(t, x, {{}, p});
+  const Data* data = data_->at(p);
+  return data ? data->given_inputs(t, x, {{}, p}) : std::vector<double>(inputs().size(), kNone);
 }
 
 std::vector<double> Dynamics::inputs(double t, const std::vector<double>& x, std::span<const double> p,
                                      std::span<const std::optional<double>> given) const {
   if (inputs().empty()) return {};
-  return data_->values().inputs({t, x, data_->parameters(p), {}}, given);
+  const Data* data = data_->at(p);
+  return data ? data->values().inputs({t, x, data->parameters(p), {}}, given)
+              : std::vector<double>(inputs().size(), kNone);
 }
 
 std::vector<double> Dynamics::outputs(double t, std::span<const double> x, std::size_t count,
                                       const Given& given) const {
   std::vector<double> out(outputs().size() * count);
-  or_stopped(out, given, [&] {
-    data_->in_points({t, x, count, given}, true, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
-      const std::vector<double> y = data_->values().outputs(points);
+  const auto of_batch = [](const Data& data, const Data::Batch& batch, std::span<double> numbers) {
+    data.in_points(batch, true, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
+      const std::vector<double> y = data.values().outputs(points);
       const std::size_t size = y.size() / points.size();
       for (std::size_t k = 0; k < points.size(); ++k)
-        for (std::size_t i = 0; i < size; ++i) out[i * count + first + k] = y[k * size + i];
+        for (std::size_t i = 0; i < size; ++i) numbers[i * batch.count + first + k] = y[k * size + i];
     });
-  });
+  };
+  or_stopped(out, given, [&] { data_->by_exponents({t, x, count, given}, outputs().size(), out, of_batch); });
   return out;
 }
 
@@ -283,14 +271,29 @@ Dynamics::Jacobian Dynamics::jacobian(double t, std::span<const double> x, std::
   const inner::RateFormulas& f = data_->values().formulas();
   const std::size_t columns = by == By::state ? f.x.size() : by == By::input ? f.u.size() : f.p.size();
   Jacobian out{f.rates.size() + f.outputs.size(), columns, {}};
-  out.values.resize(out.rows * out.columns * count);
-  or_stopped(out.values, given, [&] {
-    data_->in_points({t, x, count, given}, true, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
-      const auto all = data_->values().derivatives(points, static_cast<inner::FormulaValues::By>(by));
+  const std::size_t rows = out.rows;
+  out.values.resize(rows * columns * count);
+  const auto of_function = [&](const Data& data, const Data::Batch& batch, std::span<double> numbers) {
+    data.in_points(batch, true, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
+      const auto all = data.values().derivatives(points, static_cast<inner::FormulaValues::By>(by));
       for (std::size_t k = 0; k < all.size(); ++k)
-        for (std::size_t i = 0; i < all[k].values.size(); ++i) out.values[i * count + first + k] = all[k].values[i];
+        for (std::size_t i = 0; i < all[k].values.size(); ++i) numbers[i * batch.count + first + k] = all[k].values[i];
     });
-  });
+  };
+  const auto of_batch = [&](const Data& data, const Data::Batch& batch, std::span<double> numbers) {
+    of_function(data, batch, numbers);
+    if (by != By::parameter || data.put_in.empty()) return;
+    // The exponents vary with these parameters: their columns are those of the function for all exponents.
+    std::vector<double> others(numbers.size(), kNone);
+    if (const Data* general = data_->for_exponents({})) of_function(*general, batch, others);
+    const std::vector<std::size_t>& p = data.function->free_parameters();
+    for (std::size_t j = 0; j < columns; ++j)
+      if (data.put_in.count(p[j]) > 0)
+        for (std::size_t i = 0; i < rows; ++i)
+          std::copy_n(&others[(i * columns + j) * batch.count], batch.count, &numbers[(i * columns + j) * batch.count]);
+  };
+  or_stopped(out.values, given,
+             [&] { data_->by_exponents({t, x, count, given}, rows * columns, out.values, of_batch); });
   return out;
 }
 
@@ -298,39 +301,47 @@ Dynamics::Equations Dynamics::equations(double t, std::span<const double> x, std
                                         const Given& given) const {
   const std::vector<std::string>& unknowns = data_->values().formulas().lead.names;
   const std::size_t n = unknowns.size();
-  Equations out{unknowns, std::vector<double>(n * n * count), std::vector<double>(n * count)};
-  or_stopped(out.right, given, [&] {
-    data_->in_points({t, x, count, given}, false, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
-      const std::vector<double> values = data_->values().equations(points);
-      for (std::size_t k = 0; k < points.size(); ++k) {
-        const double* of_point = &values[k * n * (n + 1)];
-        for (std::size_t i = 0; i < n * n; ++i) out.matrix[i * count + first + k] = of_point[i];
-        for (std::size_t i = 0; i < n; ++i) out.right[i * count + first + k] = of_point[n * n + i];
-      }
+  std::vector<double> both(n * (n + 1) * count);
+  const auto of_batch = [n](const Data& data, const Data::Batch& batch, std::span<double> numbers) {
+    data.in_points(batch, false, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
+      const std::vector<double> values = data.values().equations(points);
+      for (std::size_t k = 0; k < points.size(); ++k)
+        for (std::size_t i = 0; i < n * (n + 1); ++i)
+          numbers[i * batch.count + first + k] = values[k * n * (n + 1) + i];
     });
-  });
-  return out;
+  };
+  or_stopped(both, given, [&] { data_->by_exponents({t, x, count, given}, n * (n + 1), both, of_batch); });
+  const auto right = both.begin() + static_cast<std::ptrdiff_t>(n * n * count);
+  return {unknowns, {both.begin(), right}, {right, both.end()}};
 }
 
 bool Dynamics::linear() const { return data_->function->linear(); }
 
 std::vector<double> Dynamics::leading(double t, const std::vector<double>& x, const Given& given) const {
-  return data_->points({t, x, 1, given}, 0, 1, true).lead;
+  const Data* data = data_->at(given.p);
+  return data ? data->points({t, x, 1, given}, 0, 1, true).lead
+              : std::vector<double>(data_->values().formulas().lead.size(), kNone);
 }
 
 std::string Dynamics::source(Source kind, const std::string& name) const {
-  const inner::FormulaValues& values = data_->values();
-  return kind == Source::formulas ? values.python_source()
-                                  : values.c_source(name, std::string("anholon ") + ANHOLON_VERSION);
+  const std::string made_by = std::string("anholon ") + ANHOLON_VERSION;
+  if (data_->put_in.empty())
+    return kind == Source::formulas ? data_->values().python_source() : data_->values().c_source(name, made_by);
+  return data_->text_with_exponents([&](const inner::RateFormulas& f) {
+    return kind == Source::formulas ? inner::emit_formulas(f) : inner::emit_casadi(f, name, made_by);
+  });
 }
 
 std::vector<double> Dynamics::from_motion(double t, const std::vector<double>& q, const std::vector<double>& qdot,
                                           const std::vector<double>& z, std::span<const double> p) const {
-  return data_->function->from_motion(t, q, qdot, z, p);
+  const Data* data = data_->at(p);
+  return data ? data->function->from_motion(t, q, qdot, z, p) : std::vector<double>(states().size(), kNone);
 }
 
 Dynamics::Motion Dynamics::to_motion(double t, const std::vector<double>& x, std::span<const double> p) const {
-  auto [q, qdot, z] = data_->function->to_motion(t, x, p);
+  const Data* data = data_->at(p);
+  auto [q, qdot, z] = (data ? data : data_.get())->function->to_motion(t, x, p);
+  if (!data) std::fill(qdot.begin(), qdot.end(), kNone);
   return {std::move(q), std::move(qdot), std::move(z)};
 }
 

@@ -171,8 +171,11 @@ std::string latex_escape(std::string_view text) {
 
 std::string comment_line(std::string_view text) {
   char before = ' ';
+  bool asked = false;  // the text ends with ??, which makes a trigraph of C with some characters
   return each(text, [&](std::string_view c, std::optional<std::uint32_t> code) {
-    const bool mark = (before == '*' && c == "/") || (before == '/' && c == "*");
+    const bool trigraph = asked && std::string_view("=/'()!<>-").find(c) != std::string_view::npos;
+    const bool mark = (before == '*' && c == "/") || (before == '/' && c == "*") || trigraph;
+    asked = before == '?' && c == "?";
     before = c[0];
     return (mark ? " " : "") + visible(c, code);
   });

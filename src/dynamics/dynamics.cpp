@@ -9,6 +9,7 @@
 #include "kernel/plan/planner.h"
 #include "motion/representation.h"
 #include "program/expansion.h"
+#include "setup/ends_of_tables.h"
 #include "structure/parameters_of_order.h"
 
 namespace anholon {
@@ -74,6 +75,7 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
     return no("the form eliminates coordinates, whose choice holds in a part of the motion");
   const std::size_t n = s.system.coordinates, all = s.system.size(), mechanical = s.system.mechanical();
   std::unique_ptr<Dynamics> made(new Dynamics);
+  put_ends_of_tables(s);
   made->program_ = with_own_system(s.system, s.structure);
   Start<long double> here;
   if (const Outcome o = initial_state(s, choice, here); !o.ok()) return no(o.message);

@@ -32,6 +32,7 @@ class Dynamics {
     std::vector<std::size_t> fixed =
         {};  // parameters that keep their values, because they decide which constraints hold
   };
+  // Puts the ends of tables into the workspace (setup/ends_of_tables.h).
   // Returns nullptr if these equations are no function of x, or have no solution at the start; `why` is then the
   // reason. Otherwise `why` tells why the velocities are not independent ones, a clause in words of the model; it is
   // empty if they are.

@@ -13,7 +13,7 @@ namespace anholon {
 static constexpr double kSameSides = 4096 * std::numeric_limits<double>::epsilon();
 
 RateDerivatives::RateDerivatives(const RateFormulas& f, const RateFormulas::Symbols& by)
-    : formulas_(f), columns_(f.lead.symbols) {
+    : formulas_(f), columns_(f.lead.symbols), rows_(f.rows_that_may_lack_values()) {
   columns_.insert(columns_.end(), by.symbols.begin(), by.symbols.end());
   Column rows = f.equations, partials;
   for (const Column* es : {&f.rates, &f.outputs}) rows.insert(rows.end(), es->begin(), es->end());
@@ -22,6 +22,7 @@ RateDerivatives::RateDerivatives(const RateFormulas& f, const RateFormulas::Symb
     for (std::size_t c = 0; c < d.size(); ++c)
       if (!is_zero(d[c])) partials.push_back(d[c]), partials_.push_back({i, c});
   }
+  for (const std::size_t row : rows_) partials.push_back(rows[f.equations.size() + row]);
   values_ = {f, partials};
   sides_ = {rows, columns_, f.model->names.parameters.size()};
   if (sides_.branches().empty()) return;
@@ -47,10 +48,19 @@ std::vector<RateDerivatives::Of> RateDerivatives::at(std::span<const FormulaPoin
   const std::vector<double> partials = values_.values(points);
   std::vector<Of> all;
   for (std::size_t k = 0; k < points.size(); ++k) {
-    all.push_back(assembled(partials_, std::span(partials).subspan(k * partials_.size(), partials_.size())));
+    const std::span<const double> of_point = std::span(partials).subspan(k * values_.size(), values_.size());
+    all.push_back(assembled(partials_, of_point.first(partials_.size())));
+    leave_out_rows(of_point.last(rows_.size()), all.back());
     if (!sides_.branches().empty()) leave_out_kinks(points[k], all.back());
   }
   return all;
+}
+
+void RateDerivatives::leave_out_rows(std::span<const double> values, Of& d) const {
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    if (std::isnan(values[i]))
+      std::fill_n(d.values.begin() + static_cast<std::ptrdiff_t>(rows_[i] * d.columns), d.columns,
+                  std::numeric_limits<double>::quiet_NaN());
 }
 
 // The rows of the sides are equations, rates, outputs. If a value jumps with a condition, it has no derivative with

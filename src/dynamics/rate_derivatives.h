@@ -13,8 +13,9 @@ class RateDerivatives {
   // Writes expressions into the graph of the formulas, which have to outlive this object.
   RateDerivatives(const RateFormulas& formulas, const RateFormulas::Symbols& by);
 
-  // The derivatives of rates, then of outputs, row by row. NaN if the equations have no solution, and if a formula has
-  // no derivative: at a kink or a jump of abs, min, max, sign, piecewise or a table.
+  // The derivatives of rates, then of outputs, row by row. NaN if the equations have no solution, in the row of a
+  // formula without a value, and if a formula has no derivative: at a kink or a jump of abs, min, max, sign, piecewise
+  // or a table.
   struct Of {
     std::size_t rows = 0, columns = 0;
     std::vector<double> values;
@@ -30,11 +31,15 @@ class RateDerivatives {
   void leave_out_kinks(const FormulaPoint& at, Of& d) const;
 
   const RateFormulas& formulas_;
+  // Puts NaN into the rows of formulas without a value. `values`: those of rows_.
+  void leave_out_rows(std::span<const double> values, Of& d) const;
+
   // Rows: equations, rates, outputs; columns: unknowns of the equations, then the variables.
   std::vector<Partial> partials_;
   Column columns_;
-  CompiledFormulas values_;  // of the partial derivatives
-  OneSided sides_;           // of the same rows and columns
+  std::vector<std::size_t> rows_;  // the rows of rates and outputs whose formulas may have no value
+  CompiledFormulas values_;        // of the partial derivatives, then of these rows
+  OneSided sides_;                 // of the same rows and columns
   // The place of the value of a symbol in a point.
   enum class From : std::uint8_t { time, state, lead };
   struct Source {

@@ -13,6 +13,7 @@
 #include "lowering/velocity_algebra.h"
 #include "numeric/linear.h"
 #include "program/sparse_lu.h"
+#include "setup/ends_of_tables.h"
 
 namespace anholon {
 
@@ -23,10 +24,10 @@ constexpr double kAround = 0.3;  // in coordinates and velocities
 class Builder {
  public:
   // `input_formulas`: first with all inputs replaced by their formulas, then with the parameters that are inputs.
-  Builder(Workspace& s, const Dynamics& of, const std::vector<NodeId>& input_formulas)
+  Builder(Workspace& s, const Dynamics& of, const Column& input_formulas)
       : s_(s), of_(of), motion_(emit::motion_between_events(s.system, s.structure, {})) {
     const Model& model = *s.model;
-    for (const NodeId id : input_formulas) input_formulas_.push_back(put_masses(model, Expr{model.graph.get(), id}));
+    for (const Expr e : input_formulas) input_formulas_.push_back(put_masses(model, e));
     for (const Monitor& m : model.monitors) {
       f_.output_names.push_back(m.name);
       f_.outputs.push_back(put_masses(model, m.value));
@@ -259,13 +260,17 @@ std::optional<RateFormulas> independent_rates(const Scenario& scenario, const St
   std::string why;
   const std::unique_ptr<Dynamics> function = Dynamics::make(own, choice, {.fixed = fixed}, why);
   if (!function || !function->minimal()) return std::nullopt;
-  return rate_formulas_of(own, *function, {}, {});
+  Workspace formulas(scenario);
+  return rate_formulas_of(formulas, *function, {}, {});
 }
 
 RateFormulas rate_formulas_of(Workspace& s, const Dynamics& dynamics, std::span<const NodeId> input_formulas,
                               std::span<const NodeId> open) {
-  std::vector<NodeId> both(input_formulas.begin(), input_formulas.end());
-  both.insert(both.end(), open.begin(), open.end());
+  Column both;
+  for (const std::span<const NodeId> list : {input_formulas, open})
+    for (const NodeId id : list) both.push_back({s.model->graph.get(), id});
+  both = with_ends_of_tables(*s.model, both);
+  put_ends_of_tables(s);
   return Builder(s, dynamics, both).run();
 }
 

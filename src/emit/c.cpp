@@ -51,7 +51,11 @@ std::string unused(std::initializer_list<std::pair<const char*, bool>> arguments
 
 std::string names_table(const std::string& name, const std::vector<std::string>& list) {
   std::string out = "const char *const " + name + "[] = {\n";
-  for (const std::string& s : list) out += "  \"" + code_string(s) + "\",\n";
+  for (const std::string& s : list) {
+    const std::string text = code_string(s);
+    // Two question marks may begin a trigraph.
+    out += "  \"" + (text.find("??") == std::string::npos ? text : replaced(text, "?", "\\?")) + "\",\n";
+  }
   return out + "  0};\n";
 }
 

@@ -32,7 +32,8 @@ class CasadiFile {
                       sign = used_sign_ ? "static double $_sign(double x) { return x > 0 ? 1 : x "
                                           "< 0 ? -1 : 0; }\n\n"
                                         : "";
-    return replaced(head() + constants() + sign + functions + right_side() + interface(), "$", name_);
+    const std::string entries = f_.explicit_rates() ? "" : "enum { $_ENTRIES = " + std::to_string(values_) + " };\n\n";
+    return replaced(head() + constants() + entries + sign + functions + right_side() + interface(), "$", name_);
   }
 
  private:
@@ -142,7 +143,8 @@ class CasadiFile {
         R"(/* Solves the equations e by elimination, with the pivots that suit the start. Returns 1 if they do not suit e. */
 static int $_eliminate(const double *e, double *lead)
 {
-  double l, largest = 0;
+  double l;
+  int unsuited = 0;
 )";
     for (std::size_t k = 0; k < n * n; ++k)
       if (!is_zero(given[k])) {
@@ -154,10 +156,11 @@ static int $_eliminate(const double *e, double *lead)
     std::vector<bool> done(n, false);
     for (const auto& [row, column] : f_.pivots) {
       done[row] = true;
-      out += "  const double " + place("d", row) + " = 1/" + a[row][column] + ";\n";
+      out += "  const double " + place("d", row) + " = 1/" + a[row][column] + ";\n  unsuited |= !isfinite(" +
+             place("d", row) + ");\n";
       for (std::size_t i = 0; i < n; ++i) {
         if (done[i] || a[i][column].empty()) continue;
-        out += "  l = " + a[i][column] + "*" + place("d", row) + ", largest = fmax(largest, fabs(l));\n";
+        out += "  l = " + a[i][column] + "*" + place("d", row) + ", unsuited |= !(fabs(l) < 1e3);\n";
         for (std::size_t j = 0; j < n; ++j) {
           if (a[row][j].empty() || j == column) continue;
           const bool fill = a[i][j].empty();
@@ -177,8 +180,8 @@ static int $_eliminate(const double *e, double *lead)
     }
     // A triangular matrix has no multipliers.
     if (!f_.pivots.empty() && out.find("  l = ") == std::string::npos) out += "  (void)l;\n";
-    return out + (f_.pivots.empty() ? "  (void)e, (void)lead, (void)l, (void)largest;\n  return 1;\n}\n"
-                                    : "  return !(largest < 1e3);\n}\n");
+    return out + (f_.pivots.empty() ? "  (void)e, (void)lead, (void)l, (void)unsuited;\n  return 1;\n}\n"
+                                    : "  return unsuited;\n}\n");
   }
 
   // Returns functions that compute lead by elimination or, if its pivots do not suit, by one that searches pivots; and
@@ -268,9 +271,41 @@ static int $_leading(double t, const double *x, const double *u, const double *p
   std::string partials() {
     Column results;
     for (const Column& r : results_) results.insert(results.end(), r.begin(), r.end());
-    const Partials own = partials_of(results), below = partials_of(f_.equations);
-    std::string out =
+    Partials own = partials_of(results);
+    const Partials below = partials_of(f_.equations);
+    // Each row whose formula may have no value, with the place of this value.
+    std::vector<std::pair<std::size_t, std::size_t>> values;
+    for (const std::size_t row : f_.rows_that_may_lack_values())
+      values.push_back({row, own.es.size()}), own.es.push_back(results[row]);
+    const std::string functions =
         function("partials", own.es) + (f_.explicit_rates() ? "" : function("equation_partials", below.es));
+    const std::string entries = jacobian_entries(own, below), missing = missing_entries(values);
+    const bool solves = entries.find("$_solve(") != std::string::npos;
+    return functions + jacobian_start(own.es.size(), below.es.size(), solves) + entries + missing +
+           "  return status;\n}\n\n";
+  }
+
+  // Returns the head of the function of the Jacobian, which computes the partial derivatives d of the results and e of
+  // the equations. All entries are NaN if the equations have no solution.
+  std::string jacobian_start(std::size_t own, std::size_t below, bool solves) const {
+    std::string out = "static int $_jacobian(double t, const double *x, const double *u, const double *p, double "
+                      "*out)\n{\n  double d[" +
+                      std::to_string(own + 1) + "];\n" + constants_of("partials");
+    if (f_.explicit_rates())
+      return out + "  const double *lead = 0;\n  const int status = 0;\n" + set_constants_of("partials") +
+             "  $_partials(t, x, lead, u, c_partials, d);\n";
+    out += constants_of("equations") + constants_of("equation_partials") + "  double e[" + std::to_string(below + 1) +
+           "], of[$_UNKNOWNS * ($_UNKNOWNS + 1)] = {0}" + (solves ? ", b[$_UNKNOWNS], s[$_UNKNOWNS]" : "") +
+           ";\n  $_solution at;\n  const double *lead = at.lead;\n  int status, i;\n" + set_constants_of("partials") +
+           set_constants_of("equations") + set_constants_of("equation_partials") +
+           "  $_equations(t, x, 0, u, c_equations, of);\n  status = $_factored(of, &at);\n  if (status) {\n    for (i "
+           "= 0; i < $_ENTRIES; ++i) out[i] = NAN;\n    return status;\n  }\n"
+           "  $_equation_partials(t, x, lead, u, c_equation_partials, e);\n";
+    return out + "  $_partials(t, x, lead, u, c_partials, d);\n";
+  }
+
+  // Returns the statements out[i] = …, and puts the entries into blocks: by result, then by argument.
+  std::string jacobian_entries(const Partials& own, const Partials& below) {
     const std::size_t n = f_.lead.size();
     // These are true if d equation / d column occurs, or if d result / d lead occurs.
     const auto occurs = [&](std::size_t column) {
@@ -280,24 +315,10 @@ static int $_leading(double t, const double *x, const double *u, const double *p
       return std::any_of(own.place[row].begin(), own.place[row].begin() + static_cast<std::ptrdiff_t>(n),
                          [](std::ptrdiff_t p) { return p >= 0; });
     };
-    out += std::string(
-               "static int $_jacobian(double t, const double *x, const double *u, const double *p, double *out)\n{\n") +
-           "  double d[" + std::to_string(own.es.size() + 1) + "];\n" + constants_of("partials") +
-           (f_.explicit_rates() ? "" : constants_of("equations") + constants_of("equation_partials"));
-    if (!f_.explicit_rates())
-      out += "  double e[" + std::to_string(below.es.size() + 1) +
-             "], of[$_UNKNOWNS * ($_UNKNOWNS + 1)] = {0}, b[$_UNKNOWNS], s[$_UNKNOWNS];\n  $_solution at;\n"
-             "  const double *lead = at.lead;\n  int status;\n" +
-             set_constants_of("partials") + set_constants_of("equations") + set_constants_of("equation_partials") +
-             "  $_equations(t, x, 0, u, c_equations, of);\n  status = $_factored(of, &at);\n"
-             "  $_equation_partials(t, x, lead, u, c_equation_partials, e);\n";
-    else
-      out += "  const double *lead = 0;\n  const int status = 0;\n" + set_constants_of("partials");
-    out += "  $_partials(t, x, lead, u, c_partials, d);\n";
-    // Blocks: the result, then the argument.
     for (const Column& result : results_)
       for (const Column& argument : symbols_)
         blocks_.push_back({result.size(), argument.size(), decltype(Block::entries)(argument.size())});
+    std::string out;
     std::size_t place = 0, column = 0;
     for (std::size_t argument = 0; argument < symbols_.size(); ++argument)
       for (std::size_t c = 0; c < symbols_[argument].size(); ++c, ++column) {
@@ -326,7 +347,23 @@ static int $_leading(double t, const double *x, const double *u, const double *p
         }
       }
     values_ = place;
-    return out + "  return status;\n}\n\n";
+    return out;
+  }
+
+  // Returns statements that put NaN into the rows of formulas without a value. `values`: rows, and the places of their
+  // values in d.
+  std::string missing_entries(const std::vector<std::pair<std::size_t, std::size_t>>& values) const {
+    std::string out;
+    for (const auto& [row, value] : values) {
+      const std::size_t result = row < results_[0].size() ? 0 : 1, r = result == 0 ? row : row - results_[0].size();
+      std::string of_row;
+      for (std::size_t argument = 0; argument < symbols_.size(); ++argument)
+        for (const auto& column : blocks_[result * symbols_.size() + argument].entries)
+          for (const auto& [entry, place] : column)
+            if (entry == r) of_row += "out[" + std::to_string(place) + "] = ";
+      if (!of_row.empty()) out += "  if (isnan(d[" + std::to_string(value) + "])) " + of_row + "NAN;\n";
+    }
+    return out;
   }
 
   static std::string ccs(const Block& b) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <unordered_map>
 
 #include "tape/point.h"
@@ -42,6 +43,19 @@ std::unordered_map<NodeId, Rational> risks(Expr branch) {
   return list;
 }
 
+// True for a formula with a root, or with a function that is not defined everywhere, of what varies.
+bool may_lack_value(const Column& es) {
+  for (const NodeId id : reachable(es)) {
+    const Graph& g = *es[0].graph;
+    const Node& n = g.node(id);
+    if (n.kind == Kind::function && *info(static_cast<Function>(n.index)).undefined) return true;
+    if (n.kind != Kind::product) continue;
+    for (const Term& t : g.terms(id))
+      if (!g.rational(t.weight).is_integer() && varies({es[0].graph, t.node})) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Column with_guarded_branches(const Column& es) {
@@ -80,6 +94,22 @@ Column RateFormulas::right() const {
       if (s.id == id) return g.zero();
     return Expr{};
   });
+}
+
+std::vector<std::size_t> RateFormulas::rows_that_may_lack_values() const {
+  const bool in_equations = !equations.empty() && may_lack_value(equations);
+  std::set<NodeId> unknowns;
+  for (Expr e : lead.symbols) unknowns.insert(e.id);
+  std::vector<std::size_t> rows;
+  std::size_t row = 0;
+  for (const Column* es : {&rates, &outputs})
+    for (Expr e : *es) {
+      const std::vector<NodeId> in = symbols({&e, 1});
+      const bool solved = std::any_of(in.begin(), in.end(), [&](NodeId id) { return unknowns.count(id) > 0; });
+      if ((solved && in_equations) || may_lack_value({e})) rows.push_back(row);
+      ++row;
+    }
+  return rows;
 }
 
 }  // namespace anholon

@@ -46,6 +46,9 @@ struct RateFormulas {
   // nonlinear equations right = -equations, so that  matrix correction = right  is a step of Newton's method.
   std::vector<Column> matrix() const;
   Column right() const;
+  // Returns the rows, those of rates and then those of outputs, whose formulas may have no value where some of their
+  // derivatives are numbers: z + log(x) for x < 0.
+  std::vector<std::size_t> rows_that_may_lack_values() const;
 };
 
 // Returns expressions with the same values in which branches that are not taken have values as well: sqrt(x) in the

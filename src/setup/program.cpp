@@ -1,5 +1,6 @@
 #include "setup/program.h"
 
+#include "setup/ends_of_tables.h"
 #include "setup/inputs.h"
 #include "structure/parameters_of_order.h"
 
@@ -38,6 +39,7 @@ std::string program_text(const Scenario& scenario, const StateChoice& choice, Pr
   options.made_by = made_by;
   options.rates = extras.rates;
   options.start = start_for_program(own, choice);
+  put_ends_of_tables(own);
   OpenSystem open = open_inputs(own);
   for (const Monitor& m : open.system.model->monitors) options.outputs.emplace_back(m.name, m.value);
   options.inputs = std::move(open.inputs);

@@ -129,7 +129,8 @@ monitor = {l = "lift(1)"}
 - The slope of `monotone` at a knot is the weighted harmonic mean of the slopes on both sides (Fritsch and Butland 1984), 0 where these differ in
   sign, and at the first and the last knot the slope beside it. `pchip` of SciPy and MATLAB is the same but for the slopes at these two knots
   ([theory](theory/events.md#tables)).
-- With `outside = "error"` the motion stops with an outcome where the argument leaves the knots, also at the start.
+- With `outside = "error"` the motion stops with an outcome where the argument leaves the knots, also at the start. Functions of states and
+  exported programs have no value there (`nan`).
 - The numbers of a table have no units and fit any dimension. In a file with units the call says which are meant:
   `Cd(t/(1 ms))*(1 N)` for columns of milliseconds and newtons.
 

@@ -85,7 +85,8 @@ that holds, a thrust along a velocity that is zero), the motion stops, and the o
 there: `sign` is 0, and `unit` has no value (`nan`); accelerations are those right after it.
 
 **Powers.** `x^n` has a value at x = 0 and below only if `n` is known to be a whole number: a number of the formula, or a parameter such as `n = 3`, which is then put into the
-equations of a motion, the formulas of its contacts and those of reductions. A sweep over `n` derives each case with a whole exponent anew. For other
+equations of a motion, the formulas of its contacts and those of reductions. A sweep over `n` derives each case with a whole exponent anew, and so
+does a function of states (`dynamics` in Python) for an `n` in its parameters. For other
 exponents, and for those that depend on a mode, write `abs(x)^n*sign(x)` or `abs(x)^n`.
 
 **Conditions** `a > b`, `>=`, `<`, `<=` stand in `piecewise` only.
