@@ -20,7 +20,6 @@ std::vector<Rational> times_of_rows(const SimulationOptions& o, const Rational& 
 }
 
 void SegmentRows::only_at(const std::vector<Rational>& times) {
-  // The times are rounded as rows round them; get_d() would truncate.
   for (const Rational& t : times) times_.push_back(from_rational<double>(t));
 }
 

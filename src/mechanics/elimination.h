@@ -111,6 +111,8 @@ class Elimination {
   Rows inverted(const Rows& A) const { return pivots_.inverse(A, Wanted::brief); }
   // The divisors; near a zero of one of them another elimination is better.
   const Column& pivots() const { return pivots_.divisors(); }
+  // Returns the values near the state; nullptr if there are none.
+  PointValues* point() const { return pivots_.point(); }
   // Returns sum_s X_s B_sa, which is X_nu + sum_b X_b f_b,nu.
   Column contract(const Column& X) const;
   // Return the entries of the independent and of the dependent coordinates.

@@ -39,6 +39,8 @@ class PivotChoice {
   Rows inverse(const Rows& A, Wanted wanted) { return anholon::inverse(A, *at_, divisors_, wanted); }
   // The pivots recorded so far: the divisors of all inverses.
   const Column& divisors() const { return divisors_; }
+  // The values near the state; nullptr if there are none.
+  PointValues* point() const { return at_.get(); }
 
   // Returns a copy with values of its own.
   PivotChoice copy() const;

@@ -14,6 +14,23 @@ std::string number_text(double x, int digits) {
   return std::string(buffer, r.ptr);
 }
 
+std::string exact_text_if_short(const Rational& r) {
+  constexpr std::size_t kLongest = 40;
+  const std::string rounded = number_text(from_rational<double>(r));
+  if (parse_rational(rounded) == r) return rounded;
+  // An integer with a power of ten as its denominator is written with a point.
+  Rational shifted = abs(r);
+  std::size_t places = 0;
+  for (; !shifted.is_integer() && places < kLongest; ++places) shifted *= 10;
+  if (std::string digits = to_string(shifted); shifted.is_integer() && digits.size() <= kLongest) {
+    if (places == 0) return (r < 0 ? "-" : "") + digits;
+    if (digits.size() <= places) digits.insert(0, places + 1 - digits.size(), '0');
+    return (r < 0 ? "-" : "") + digits.insert(digits.size() - places, ".");
+  }
+  const std::string fraction = to_string(r);
+  return fraction.size() <= kLongest ? fraction : rounded;
+}
+
 std::string number_text(long double x, int digits) {
   if (!std::isfinite(x)) return std::isnan(x) ? "nan" : x > 0 ? "inf" : "-inf";
   char buffer[64];

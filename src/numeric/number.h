@@ -156,5 +156,8 @@ std::string number_text(const Multi& x, int digits = 0);
 // Returns a text with two digits more than `digits`, the digits that the user requested, up to the digits of a Quad;
 // all digits if `digits` is at most 16.
 std::string quad_text(Quad x, int digits);
+// Returns an exact text of the number, in decimal digits or as a fraction, if there is a short one; else the digits of
+// the nearest double.
+std::string exact_text_if_short(const Rational& r);
 
 }  // namespace anholon

@@ -7,6 +7,7 @@
 #include <ostream>
 
 #include <flint/fmpq.h>
+#include <mpfr.h>
 
 namespace anholon {
 
@@ -69,9 +70,15 @@ mpq_class Rational::get_mpq() const {
 }
 
 double Rational::get_d() const {
-  constexpr long kExact = 1L << std::numeric_limits<double>::digits;
-  if (den_ == 1 && -kExact <= num_ && num_ <= kExact) return static_cast<double>(num_);
-  return get_mpq().get_d();
+  constexpr int kBits = std::numeric_limits<double>::digits;
+  constexpr long kExact = 1L << kBits;
+  if (den_ <= kExact && -kExact <= num_ && num_ <= kExact) return static_cast<double>(num_) / static_cast<double>(den_);
+  mpfr_t v;
+  mpfr_init2(v, kBits);
+  mpfr_set_q(v, get_mpq().get_mpq_t(), MPFR_RNDN);
+  const double nearest = mpfr_get_d(v, MPFR_RNDN);
+  mpfr_clear(v);
+  return nearest;
 }
 
 std::string Rational::get_str(int base) const {

@@ -77,7 +77,7 @@ class Rational {
   // Return the number of bits, and of machine words, of numerator and denominator together.
   std::uint64_t bits() const;
   std::size_t limbs() const;
-  // Returns the nearest double towards zero.
+  // Returns the nearest double; the member of GMP's classes truncates.
   double get_d() const;
   std::string get_str(int base = 10) const;
   mpq_class get_mpq() const;

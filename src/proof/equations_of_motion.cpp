@@ -84,7 +84,7 @@ bool EquationsOfMotion::choose(Stage& s, const std::vector<std::size_t>& preferr
 }
 
 EquationsOfMotion::EquationsOfMotion(const Mechanics& M, unsigned highest_order,
-                                     const std::vector<std::size_t>& preferred)
+                                     const std::vector<std::size_t>& preferred, PointValues* near)
     : highest(std::max(2U, highest_order)) {
   const Model& model = *M.model;
   Graph& g = M.graph();
@@ -127,6 +127,7 @@ EquationsOfMotion::EquationsOfMotion(const Mechanics& M, unsigned highest_order,
     on_constraints_.push_back(values_of(std::move(below), attempt, attempt + 1000));
     anywhere_.push_back(values_of({}, attempt + 2000, attempt + 2000));
   }
+  if (on_motion_.empty()) find_projected_points(preferred, near);
   if (on_motion_.empty()) regular = false;
   for (Stage& s : stages_) {
     for (std::size_t i : s.chosen_rows) {
@@ -147,7 +148,9 @@ std::vector<PointValues>& EquationsOfMotion::elsewhere() {
   elsewhere_.emplace();
   for (int k = kElsewhere; k < kElsewhere + kAttempts && elsewhere_->size() < kWanted; ++k) {
     Symbols known, below;
-    if (find_point(k, known, &below)) elsewhere_->push_back(values_of(std::move(known), k, k));
+    if (projected_) known = starting_values(k, nullptr);
+    if (projected_ ? project_point(k, known, &below) : find_point(k, known, &below))
+      elsewhere_->push_back(values_of(std::move(known), k, k));
   }
   return *elsewhere_;
 }
@@ -186,23 +189,125 @@ bool EquationsOfMotion::find_point(int attempt, Symbols& known, Symbols* below) 
   return true;
 }
 
-void EquationsOfMotion::solve_lower() {
-  lower_solved_.emplace();
-  for (std::size_t k = 0; k < 2; ++k) {
+// Returns values of all symbols of the equations: generic ones; or, for the symbols that a state gives, values that
+// differ from those at the start by up to a half of their size, and less at later attempts.
+EquationsOfMotion::Symbols EquationsOfMotion::starting_values(int attempt, PointValues* near) const {
+  constexpr int kSizes = 8;
+  Column residuals;
+  for (const Stage& s : stages_)
+    for (const DerivedEquation& e : s.rows) residuals.push_back(e.residual);
+  Symbols values;
+  for (const NodeId id : symbols(residuals)) {
+    const Expr symbol{residuals[0].graph, id};
+    const Node& n = residuals[0].graph->node(id);
+    const bool is_above = n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order >= 2);
+    double value = generic(n, attempt);
+    if (near && !is_above) {
+      const double start = (*near)(symbol), size = start == 0 ? 1 : std::abs(start);
+      const double sign = scattered_bits(key(n) + static_cast<std::uint64_t>(attempt)) & 1 ? -1 : 1;
+      const bool is_rate = n.kind == Kind::jet && n.order == 1;
+      value = is_rate ? start + value : start + sign * value * std::ldexp(size, -2 - attempt % kSizes);
+    }
+    values[key(n)] = value;
+  }
+  return values;
+}
+
+// Projects the values on the manifold of the constraints, order by order, by Newton steps of least length.
+bool EquationsOfMotion::project_point(int attempt, Symbols& known, Symbols* below) const {
+  for (std::size_t k = 0; k < stages_.size(); ++k) {
+    if (k == 2) *below = known;
+    if (!stages_[k].rows.empty() && !project(stages_[k], attempt, known)) return false;
+  }
+  return true;
+}
+
+bool EquationsOfMotion::project(const Stage& s, int attempt, Symbols& known) const {
+  const std::vector<std::size_t> all_rows = up_to(s.rows.size()), all = up_to(s.symbols.size());
+  const Graph& g = *s.symbols[0].graph;
+  Matrix<double> identity(all.size(), all.size());
+  for (std::size_t i : all) identity(i, i) = 1;
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    PointValues at = values_of(known, attempt, attempt);
+    const Matrix<double> j = values(s.jacobian, all_rows, all, at);
+    if (!finite(j)) return false;
+    const std::vector<std::size_t> independent = choose_rows(j, kSingular).independent;
+    std::vector<double> f, change;
+    for (std::size_t r : independent) f.push_back(at(s.rows[r].residual));
+    if (!least_change(identity, values(s.jacobian, independent, all, at), f, change)) return false;
+    if (!std::all_of(change.begin(), change.end(), [](double v) { return std::isfinite(v); })) return false;
+    double largest = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      double& value = known[key(g.node(s.symbols[i].id))];
+      value -= change[i];
+      largest = std::max(largest, std::abs(change[i]) / (1 + std::abs(value)));
+    }
+    if (!(largest < 1e6)) return false;
+    if (largest < 1e-13) return true;
+  }
+  return false;
+}
+
+void EquationsOfMotion::find_projected_points(const std::vector<std::size_t>& preferred, PointValues* near) {
+  constexpr int kFirst = 100, kGeneric = 24, kNear = 40;
+  int attempt = kFirst;
+  const std::vector<std::size_t> none;
+  // Chooses equations and unknowns, and returns their number for each order.
+  const auto ranks = [&](const Symbols& known) {
+    PointValues at = values_of(known, attempt, attempt);
+    std::vector<std::size_t> numbers;
+    for (Stage& s : stages_) {
+      if (!choose(s, preferred, at)) return none;
+      numbers.push_back(s.chosen_rows.size());
+    }
+    return numbers;
+  };
+  for (int k = 0; k < kGeneric + (near ? kNear : 0) && on_motion_.size() < kPoints; ++k) {
+    attempt = kFirst + k;
+    Symbols known = starting_values(attempt, k < kGeneric ? nullptr : near), below;
+    const Symbols start = known;
+    const std::vector<std::size_t> before = on_motion_.empty() ? ranks(known) : none;
+    if (!project_point(attempt, known, &below)) continue;
+    // A point at which fewer equations are independent than around it is singular: the others do not follow from these.
+    if (on_motion_.empty() && (before.empty() || ranks(known) != before)) continue;
+    on_motion_.push_back(values_of(std::move(known), attempt, attempt));
+    on_constraints_.push_back(values_of(std::move(below), attempt, attempt));
+    anywhere_.push_back(values_of(start, attempt, attempt));
+  }
+  projected_ = !on_motion_.empty();
+}
+
+// Returns the equations of orders below `orders`, solved one after the other; none if this is impossible, or if the
+// equations or their solutions have more nodes.
+SolvedEquations EquationsOfMotion::solutions(std::size_t orders, std::size_t most_nodes) const {
+  SolvedEquations solved;
+  Column residuals;
+  for (std::size_t k = 0; k < orders; ++k)
+    for (std::size_t i : stages_[k].chosen_rows) residuals.push_back(stages_[k].rows[i].residual);
+  if (reachable(residuals).size() > most_nodes) return {};
+  for (std::size_t k = 0; k < orders; ++k) {
     const Stage& s = stages_[k];
     Column open;
     for (std::size_t j : s.chosen_symbols) open.push_back(s.symbols[j]);
     for (std::size_t i : s.chosen_rows)
-      if (!lower_solved_->add(s.rows[i].residual, open)) {
-        lower_solved_ = SolvedEquations();
-        return;
-      }
+      if (!solved.add(s.rows[i].residual, open) || solved.size() > most_nodes) return {};
   }
+  return solved;
 }
 
 Column EquationsOfMotion::reduced(Expr e) {
-  if (!lower_solved_) solve_lower();
+  if (!lower_solved_) lower_solved_ = solutions(2, SIZE_MAX);
   return lower_solved_->empty() ? Column{} : lower_solved_->branches(e);
+}
+
+Column EquationsOfMotion::on_solutions(Expr e) {
+  constexpr std::size_t kMostNodes = 1000;
+  if (!solved_) try {
+      solved_ = solutions(stages_.size(), kMostNodes);
+    } catch (const Failure&) {  // a pivot vanishes
+      solved_ = SolvedEquations();
+    }
+  return solved_->empty() ? Column{} : solved_->branches(e);
 }
 
 }  // namespace anholon

@@ -29,8 +29,10 @@ PointValues generic_values(int attempt);
 
 class EquationsOfMotion {
  public:
-  // `preferred`: coordinates for which constraints are solved if possible.
-  EquationsOfMotion(const Mechanics& M, unsigned highest, const std::vector<std::size_t>& preferred);
+  // `preferred`: coordinates for which constraints are solved if possible. `near`: values at the start of the model's
+  // motion.
+  EquationsOfMotion(const Mechanics& M, unsigned highest, const std::vector<std::size_t>& preferred,
+                    PointValues* near = nullptr);
 
   unsigned highest = 2;
   std::vector<DerivedEquation> lower;  // constraints and their derivatives of orders 0 and 1
@@ -41,7 +43,9 @@ class EquationsOfMotion {
   bool regular = false;  // the equations determine their unknowns, and the omitted equations follow from them
 
   // Points in double: on the motion; with only the constraints of orders 0 and 1 satisfied; arbitrary. There are
-  // equally many of each, unless none was found.
+  // equally many of each, unless none was found. Constraints are solved for as many symbols, whose other symbols have
+  // generic values; if this fails at all of these, generic points, then points near the start, are projected on the
+  // manifold of the constraints.
   std::vector<PointValues>& on_motion() { return on_motion_; }
   std::vector<PointValues>& on_constraints() { return on_constraints_; }
   std::vector<PointValues>& anywhere() { return anywhere_; }
@@ -50,9 +54,15 @@ class EquationsOfMotion {
   // may be empty.
   std::vector<PointValues>& elsewhere();
 
+  // Return the points if they are projected, else nullptr: with generic values of free symbols there are none.
+  std::vector<PointValues>* projected() { return projected_ ? &on_motion_ : nullptr; }
+  std::vector<PointValues>* projected_elsewhere() { return projected_ ? &elsewhere() : nullptr; }
+
   // Returns e with the constraints of orders 0 and 1 solved, on each branch of those that are quadratic; empty if they
   // cannot be solved.
   Column reduced(Expr e);
+  // Returns e with the equations of all orders solved, on each branch; empty if they cannot be solved by short formulas.
+  Column on_solutions(Expr e);
 
  private:
   struct Stage {
@@ -65,12 +75,17 @@ class EquationsOfMotion {
 
   bool choose(Stage& stage, const std::vector<std::size_t>& preferred, PointValues& at) const;
   bool find_point(int attempt, Symbols& values, Symbols* lower_values);
-  void solve_lower();
+  void find_projected_points(const std::vector<std::size_t>& preferred, PointValues* near);
+  Symbols starting_values(int attempt, PointValues* near) const;
+  bool project_point(int attempt, Symbols& values, Symbols* lower_values) const;
+  bool project(const Stage& stage, int attempt, Symbols& values) const;
+  SolvedEquations solutions(std::size_t orders, std::size_t most_nodes) const;
 
   std::vector<Stage> stages_;
   std::vector<PointValues> on_motion_, on_constraints_, anywhere_;
   std::optional<std::vector<PointValues>> elsewhere_;
-  std::optional<SolvedEquations> lower_solved_;
+  bool projected_ = false;
+  std::optional<SolvedEquations> lower_solved_, solved_;
 };
 
 }  // namespace anholon

@@ -13,6 +13,8 @@ class SolvedEquations {
   // removes this symbol from `open`. Returns false if this is impossible, or if there are too many branches.
   bool add(Expr psi, Column& open);
   bool empty() const { return symbols_.empty(); }
+  // Returns the number of nodes of the solutions.
+  std::size_t size() const { return reachable(values_).size(); }
   // Returns e with the solutions substituted, on each branch of the quadratic equations; empty if they have no value.
   Column branches(Expr e) const;
 

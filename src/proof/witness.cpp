@@ -17,6 +17,7 @@ constexpr int kSizes = 4;    // sizes of the free derivatives: 1, 1/2, 1/4, …
 constexpr slong kFirstBits = 64;
 constexpr slong kRootBits = 256;  // precision of the box of a root, unless more is requested
 constexpr int kNewtonSteps = 60;
+constexpr int kBitsNear[] = {12, 40};  // significant bits of the free values at a given start
 
 // Returns a rational in (1/5, 8/5) that depends on the symbol and the attempt. Derivatives, and for Where::elsewhere
 // also coordinates, have either sign.
@@ -31,6 +32,13 @@ Rational arbitrary(const Node& n, int attempt, Where where) {
   else if (attempt % 2)
     r *= 3;
   return h & 1 ? Rational(-r) : r;
+}
+
+// Returns the number with the upper bits of its significand.
+Rational rounded(double x, int bits) {
+  int exponent = 0;
+  const double significand = std::frexp(x, &exponent);
+  return Rational(std::ldexp(std::round(std::ldexp(significand, bits)), exponent - bits));
 }
 
 // Returns the parameters of the model that have a rational value.
@@ -54,8 +62,9 @@ class Search {
  public:
   // Parameters have the values of the model, or arbitrary ones.
   Search(const Difference& d, const Column& equations, const Column& unknowns, const Model& model, bool of_the_model,
-         Where where = Where::positive)
-      : e_(d.expression()), g_(*e_.graph), where_(where), parts_{d.left}, equations_(equations), unknowns_(unknowns) {
+         Where where = Where::positive, std::vector<PointValues>* starts = nullptr)
+      : e_(d.expression()), g_(*e_.graph), where_(where), parts_{d.left}, equations_(equations), unknowns_(unknowns),
+        starts_(starts) {
     if (of_the_model) parameters_ = rational_parameters(model);
     for (const auto& [coefficient, term] : d.right) parts_.insert(parts_.end(), {coefficient, term});
   }
@@ -90,7 +99,10 @@ class Search {
     WitnessSearch out;
     std::string largest;
     int tried = 0;
-    for (int attempt = 0; attempt < kPoints; ++attempt) {
+    const int near = starts_ ? static_cast<int>(starts_->size() * std::size(kBitsNear)) : 0;
+    for (int attempt = 0; attempt < kPoints + near; ++attempt) {
+      if (attempt == kPoints && tried > 0) break;
+      begin_at(attempt);
       WitnessPoint w;
       if (!place(attempt, w)) continue;
       std::string value;
@@ -118,6 +130,13 @@ class Search {
     return std::any_of(unknowns_.begin(), unknowns_.end(), [&](Expr u) { return u.id == id; });
   }
 
+  // From attempt kPoints on, free symbols have rounded values at the starts.
+  void begin_at(int attempt) {
+    const auto k = static_cast<std::size_t>(std::max(attempt - kPoints, 0));
+    start_ = attempt < kPoints ? nullptr : &(*starts_)[k % starts_->size()];
+    if (start_) bits_ = kBitsNear[k / starts_->size()];
+  }
+
   // Chooses values of the free symbols, and a verified root for the others.
   bool place(int attempt, WitnessPoint& w) {
     Column all = equations_;
@@ -128,7 +147,11 @@ class Search {
       if (is_unknown(id)) continue;
       const Node& n = g_.node(id);
       const bool given = n.kind == Kind::parameter && n.index < parameters_.size() && parameters_[n.index];
-      const Rational r = given ? *parameters_[n.index] : arbitrary(n, attempt, where_);
+      const auto at_start = [&] { return (*start_)(Expr{&g_, id}); };
+      if (!given && start_ && !std::isfinite(at_start())) return false;
+      const Rational r = given    ? *parameters_[n.index]
+                         : start_ ? rounded(at_start(), bits_)
+                                  : arbitrary(n, attempt, where_);
       value.emplace(id, r);
       w.values.push_back({Expr{&g_, id}, r});
     }
@@ -164,7 +187,7 @@ class Search {
 
   bool approximate(const std::unordered_map<NodeId, Rational>& value, int attempt, std::vector<long double>& root) {
     std::vector<double> x;
-    for (Expr u : unknowns_) x.push_back(arbitrary(g_.node(u.id), attempt, where_).get_d());
+    for (Expr u : unknowns_) x.push_back(start_ ? (*start_)(u) : arbitrary(g_.node(u.id), attempt, where_).get_d());
     Rows jacobian;
     for (Expr f : equations_) jacobian.push_back(gradient(f, unknowns_));
     for (int k = 0; k < kNewtonSteps; ++k) {
@@ -225,6 +248,9 @@ class Search {
   slong most_bits_ = kWitnessBits;
   std::vector<std::optional<Rational>> parameters_;
   Column parts_, equations_, unknowns_;
+  std::vector<PointValues>* starts_ = nullptr;
+  PointValues* start_ = nullptr;  // the start of this attempt
+  int bits_ = 0;                  // of the values at the start
 };
 
 }  // namespace
@@ -234,10 +260,10 @@ WitnessSearch find_witness(const Difference& d, const Elimination& elimination, 
 }
 
 WitnessSearch find_witness(const Difference& d, const Column& equations, const Column& unknowns, const Model& model,
-                           Where where) {
+                           Where where, std::vector<PointValues>* starts) {
   WitnessSearch search;
   for (const bool of_the_model : {true, false}) {
-    search = Search(d, equations, unknowns, model, of_the_model, where).run();
+    search = Search(d, equations, unknowns, model, of_the_model, where, starts).run();
     if (search.witness) break;
   }
   return search;

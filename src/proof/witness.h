@@ -25,8 +25,9 @@ WitnessSearch find_witness(const Difference& d, const Elimination& elimination, 
 // large.
 enum class Where : std::uint8_t { positive, elsewhere };
 
-// Searches a witness at a root of other equations, as many as unknowns.
+// Searches a witness at a root of other equations, as many as unknowns. `starts`: approximate roots, near which roots
+// are searched if there is none for arbitrary values of the free symbols.
 WitnessSearch find_witness(const Difference& d, const Column& equations, const Column& unknowns, const Model& model,
-                           Where where = Where::positive);
+                           Where where = Where::positive, std::vector<PointValues>* starts = nullptr);
 
 }  // namespace anholon

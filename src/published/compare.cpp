@@ -54,8 +54,9 @@ Comparer::Comparer(const Mechanics& M, const Elimination& elimination, SymbolNam
 
 EquationsOfMotion& Comparer::motion(unsigned highest) {
   const auto it = motions_.find(highest);
-  return it != motions_.end() ? it->second
-                              : motions_.try_emplace(highest, M_, highest, elimination_.dependent).first->second;
+  return it != motions_.end()
+             ? it->second
+             : motions_.try_emplace(highest, M_, highest, elimination_.dependent, elimination_.point()).first->second;
 }
 
 EquationsOfMotion& Comparer::motion_for_changes(Expr published) {
@@ -253,6 +254,20 @@ bool Comparer::combined(Expr P, EquationsOfMotion& motion, Comparison& out) {
   return true;
 }
 
+// Decides equations that are not linear in accelerations, multipliers and higher derivatives: these are put in as
+// functions of the lower ones.
+bool Comparer::by_solutions(Expr P, EquationsOfMotion& motion, Comparison& out) const {
+  constexpr std::size_t kLongest = 200;  // nodes
+  if (number_of_nodes(P) > kLongest) return false;
+  const Column branches = motion.on_solutions(P);
+  if (branches.empty() || !std::all_of(branches.begin(), branches.end(),
+                                       [](Expr e) { return shown_zero_in_few_functions(e, Effort::full); }))
+    return false;
+  out.verdict = Verdict::proved;
+  out.what = "a consequence of the equations of motion and the constraints";
+  return true;
+}
+
 bool Comparer::without_motion(Expr P, EquationsOfMotion& motion) const {
   const Column p = gradient(P, motion.top);
   return std::all_of(p.begin(), p.end(), [&](Expr x) { return is_zero(x) || vanishes(x, motion.anywhere()); });
@@ -278,25 +293,31 @@ Comparison Comparer::decide(Expr P) {
   for (const DerivedEquation& e : motion.rows)
     if (directly(P, e, motion, out)) return out;
   if (!motion.regular) {
-    if (on_manifold(P, false, out) || of_higher_order(P, out) || by_contractions(P, out)) return out;
+    const bool known = !motion.on_motion().empty() || !singular_at_start();
+    if ((known && on_manifold(P, false, out)) || of_higher_order(P, out) || by_contractions(P, out)) return out;
     if (out.detail.empty())
-      out.detail = "the equations do not determine the accelerations and multipliers at this order";
+      out.detail = motion.on_motion().empty()
+                       ? "no point of a motion was found"
+                       : "the equations do not determine the accelerations and multipliers at this order";
     return out;
   }
   if (!vanishes(P, motion.on_motion())) {
     Difference d{{}, P, {}, {}, {}, {}};
-    WitnessSearch search = find_witness(d, motion.equations, motion.unknowns, *M_.model);
+    WitnessSearch search =
+        find_witness(d, motion.equations, motion.unknowns, *M_.model, Where::positive, motion.projected());
     out.detail = search.detail;
     out.witness = std::move(search.witness);
     if (out.witness) out.verdict = Verdict::refuted;
     return out;
   }
-  if (combined(P, motion, out) || on_manifold(P, true, out) || by_contractions(P, out)) return out;
+  if (combined(P, motion, out) || on_manifold(P, true, out) || by_solutions(P, motion, out) || by_contractions(P, out))
+    return out;
   // Up to this number of nodes, a difference below the round-off of numbers is searched as well.
   constexpr std::size_t kShort = 1000;
   if (number_of_nodes(P) <= kShort || !vanishes(P, motion.elsewhere())) {
     const Difference d{{}, P, {}, {}, {}, {}};
-    WitnessSearch search = find_witness(d, motion.equations, motion.unknowns, *M_.model, Where::elsewhere);
+    WitnessSearch search =
+        find_witness(d, motion.equations, motion.unknowns, *M_.model, Where::elsewhere, motion.projected_elsewhere());
     if (search.witness) {
       out.verdict = Verdict::refuted;
       out.in_places = true;

@@ -93,6 +93,8 @@ class Comparer {
   std::string name(const DerivedEquation& e) const;
   std::string times(Expr factor) const;
   Expr tidy(Expr e) const;
+  bool singular_at_start() const;
+  bool by_solutions(Expr P, EquationsOfMotion& motion, Comparison& out) const;
   Column leading(const DerivedEquation& e, EquationsOfMotion& motion) const;
 
   const Mechanics& M_;

@@ -62,6 +62,22 @@ bool Comparer::by_contractions(Expr P, Comparison& out) {
   return true;
 }
 
+// True if the solved constraints determine the dependent derivatives at arbitrary points, but not at the start of the
+// motion: constraints may depend on each other on the whole manifold.
+bool Comparer::singular_at_start() const {
+  constexpr double kSingular = 1e-9;
+  const Elimination& E = elimination_;
+  PointValues* const at = E.point();
+  if (!at) return false;
+  const Column unknown = E.D(jets(*M_.model, E.m));
+  Matrix<double> jacobian(E.phi.size(), unknown.size());
+  for (std::size_t r = 0; r < E.phi.size(); ++r) {
+    const Column row = gradient(E.phi[r], unknown);
+    for (std::size_t j = 0; j < unknown.size(); ++j) jacobian(r, j) = (*at)(row[j]);
+  }
+  return choose_rows(jacobian, kSingular).independent.size() < E.phi.size();
+}
+
 // Returns true if the verdict is decided.
 bool Comparer::on_manifold(Expr P, bool regular, Comparison& out) {
   const Elimination& E = elimination_;

@@ -51,6 +51,7 @@ OpenModel Subject::with_free_inputs(OpenModel open) {
     free.insert(k);
   }
   if (free.empty()) return open;
+  as_read_ = open.model;
   auto model = std::make_shared<Model>(*open.model);
   for (const std::size_t k : free) model->controls[k].value.reset();
   put_inputs_into_inputs(*model, free);
@@ -117,7 +118,8 @@ Subject::WithNumbers& Subject::with_numbers(const Parameters& of) {
     if (e.graph) e = out->put(e);
   });
   out->mechanics = anholon::mechanics(out->model);
-  out->elimination = elimination_for(out->mechanics, Unknowns::coordinates, choice_.overrides, choice_.eliminate);
+  out->elimination = elimination_for(out->mechanics, Unknowns::coordinates, choice_.overrides, choice_.eliminate, true,
+                                     0, as_read_.get());
   out->comparer.emplace(out->mechanics, out->elimination, names());
   return *out;
 }
@@ -148,7 +150,7 @@ std::string Subject::values_of(const Parameters& of) {
     const Expr symbol = numbered_[k].input ? g.control(index, 0) : g.parameter(index);
     const Expr value = with_numbers(of).values.at(symbol.id);
     text += (text.empty() ? "" : ", ") + numbered_[k].name + " = " +
-            (is_number(value) ? number_text(number_value(value).get_d()) : print(value, names(), Format::text));
+            (is_number(value) ? exact_text_if_short(number_value(value)) : print(value, names(), Format::text));
   }
   return text;
 }
@@ -183,8 +185,9 @@ Comparison Subject::compare(const PublishedEquation& equation) {
 const Elimination& Subject::elimination(bool quasi) {
   std::unique_ptr<const Elimination>& known = eliminations_[quasi];
   if (!known)
-    known = std::make_unique<const Elimination>(elimination_for(
-        mechanics_, quasi ? Unknowns::quasi_velocities : Unknowns::coordinates, choice_.overrides, choice_.eliminate));
+    known = std::make_unique<const Elimination>(
+        elimination_for(mechanics_, quasi ? Unknowns::quasi_velocities : Unknowns::coordinates, choice_.overrides,
+                        choice_.eliminate, true, 0, as_read_.get()));
   return *known;
 }
 

@@ -65,6 +65,7 @@ class Subject {
   OpenModel with_free_inputs(OpenModel open);
 
   std::vector<Numbered> numbered_;
+  std::shared_ptr<const Model> as_read_;  // the model before inputs were freed, if any was
   OpenModel open_;
   StateChoice choice_;
   Mechanics mechanics_;

@@ -141,7 +141,13 @@ std::function<double(const Node&)> symbol_near(const Model& model, const std::ve
                                                const InitialState<double>& state) {
   // Varying masses need some positive value for the choice of pivots.
   const bool known = state.q.size() == model.coordinates.size();
-  return [parameters, state, known](const Node& n) {
+  std::vector<std::optional<double>> inputs;
+  for (const Control& u : model.controls)
+    inputs.push_back(u.value && is_number(*u.value) ? std::optional(from_rational<double>(number_value(*u.value)))
+                                                    : std::nullopt);
+  return [parameters, state, known, inputs](const Node& n) {
+    if (n.kind == Kind::control && n.index < inputs.size() && inputs[n.index])
+      return n.order == 0 ? *inputs[n.index] : 0.0;
     if (n.kind == Kind::parameter && n.index < parameters.size()) return parameters[n.index];
     if (known && n.kind == Kind::time) return state.t;
     if (const double* value = n.kind == Kind::jet || n.kind == Kind::state ? state.value(n) : nullptr) return *value;

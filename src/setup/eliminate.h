@@ -7,7 +7,7 @@
 namespace anholon {
 
 // Returns values of symbols at the state; values that the state lacks (higher derivatives, multipliers) are
-// pseudo-random.
+// pseudo-random. Inputs whose formula is a number have this value.
 PointValues values_near(const Model& model, const std::vector<double>& parameters, const InitialState<double>& state);
 // Returns the function behind `values_near`.
 std::function<double(const Node&)> symbol_near(const Model& model, const std::vector<double>& parameters,
@@ -30,9 +30,11 @@ EliminationChoice choose_elimination(const Mechanics& mechanics, const std::vect
 
 // Returns the elimination that a form needs, for equations that are not integrated, near the state in which a motion
 // starts. The state need not be consistent. `m`: the requested order, no less than that of any constraint or
-// quasi-velocity; 0: the highest of these.
+// quasi-velocity; 0: the highest of these. `starting`: the model whose initial state is taken, if inputs of the
+// mechanics' own model are open; the models differ in nothing else.
 Elimination elimination_for(const Mechanics& mechanics, Unknowns unknowns, const std::vector<StateOverride>& overrides,
-                            const std::vector<std::size_t>& wanted, bool solve = true, unsigned m = 0);
+                            const std::vector<std::size_t>& wanted, bool solve = true, unsigned m = 0,
+                            const Model* starting = nullptr);
 // Returns an elimination by coordinates, of the constraints that ideal reactions keep: their multipliers follow from
 // the equations of its dependent coordinates.
 Elimination elimination_of_reactions(const Mechanics& mechanics, const std::vector<StateOverride>& overrides,

@@ -23,14 +23,18 @@ static void add_accelerations(const Model& model, const std::vector<StateOverrid
 // Returns an elimination of the constraints among `all` that are independent.
 static Elimination elimination_of(const Mechanics& m, const std::vector<std::size_t>& all, Unknowns unknowns,
                                   const std::vector<StateOverride>& overrides, const std::vector<std::size_t>& wanted,
-                                  bool solve, unsigned order) {
-  const Model& model = *m.model;
+                                  bool solve, unsigned order, const Model* starting = nullptr) {
+  const Model& model = starting ? *starting : *m.model;
   Column es;
   for (const Parameter& p : model.parameters) es.push_back(p.value);
   const std::vector<double> parameters = evaluate_parameters<double>(*model.graph, es);
   InitialState<double> state;
-  if (model.unknown_functions.empty())
-    if (!consistent_state(InitialProblem<double>{&m, parameters, overrides, {}}, state).ok()) state = {};
+  if (model.unknown_functions.empty()) {
+    std::optional<Mechanics> of_start;
+    if (starting) of_start = mechanics(*starting);
+    const Mechanics* of = of_start ? &*of_start : &m;
+    if (!consistent_state(InitialProblem<double>{of, parameters, overrides, {}}, state).ok()) state = {};
+  }
   if (!state.q.empty() && highest_order(m) >= 2) add_accelerations(model, overrides, state);
   const auto at = std::make_shared<PointValues>(values_near(model, parameters, state));
   ConstraintsOfEquations constraints = constraints_of_equations(m, all, parameters, state);
@@ -43,11 +47,11 @@ static Elimination elimination_of(const Mechanics& m, const std::vector<std::siz
 }
 
 Elimination elimination_for(const Mechanics& m, Unknowns unknowns, const std::vector<StateOverride>& overrides,
-                            const std::vector<std::size_t>& wanted, bool solve, unsigned order) {
+                            const std::vector<std::size_t>& wanted, bool solve, unsigned order, const Model* starting) {
   if (unknowns != Unknowns::coordinates && unknowns != Unknowns::quasi_velocities) return Elimination::of_order(order);
   std::vector<std::size_t> all;
   for (std::size_t r = 0; r < m.phi.size(); ++r) all.push_back(r);
-  return elimination_of(m, all, unknowns, overrides, wanted, solve, order);
+  return elimination_of(m, all, unknowns, overrides, wanted, solve, order, starting);
 }
 
 Elimination elimination_of_reactions(const Mechanics& m, const std::vector<StateOverride>& overrides,

@@ -56,9 +56,9 @@ static void check_times(const Item& section, const Model& model) {
   for (const WrittenTime& t : s.at)
     if (t.value < low || t.value > high)
       throw Failure(section.find("at")->span,
-                    "the time " + number_text(t.value.get_d()) + " lies " +
-                        ((t.value < low) == (start <= *s.to) ? "before the start, t = " + number_text(start.get_d())
-                                                             : "beyond the end, t = " + number_text(s.to->get_d())),
+                    "the time " + exact_text_if_short(t.value) + " lies " +
+                        ((t.value < low) == (start <= *s.to) ? "before the start, t = " + exact_text_if_short(start)
+                                                             : "beyond the end, t = " + exact_text_if_short(*s.to)),
                     "'at' asks for rows between the start and 'to'");
 }
 

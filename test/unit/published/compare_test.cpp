@@ -108,6 +108,94 @@ TEST(Compare, InputsAreFree) {
   EXPECT_EQ(feedback.compare("m*x'' = -u").verdict, Verdict::refuted);
 }
 
+// Free inputs have no value at the start of the motion, near which the constraints are solved.
+TEST(Compare, FreeInputsBesideConstraints) {
+  const auto model = [](const std::string& constraint) {
+    return "coordinates = [\"x\", \"y\"]\ninput = {u = {}, k = \"3\"}\n"
+           "particle = [{name = \"p\", mass = 1, position = \"x*ex + y*ey\"}]\n"
+           "force = [{on = \"p\", vector = \"(u + k)*ex\"}]\nconstraint = [" +
+           constraint + "]\n";
+  };
+  Compared servo(model(R"({name = "hold", equation = "x'' = 1", by = "u"})"));
+  EXPECT_EQ(servo.what("x'' = 1"), "the constraint hold");
+  EXPECT_EQ(servo.what("x'' = u + k"), "the equation of x");
+  EXPECT_EQ(servo.compare("x'' = u").verdict, Verdict::refuted);
+  EXPECT_EQ(servo.compare("u = -2").with_numbers, "k = 3");
+  Compared rolling(model(R"({name = "hold", equation = "y' = k*x'"}, {name = "push", equation = "x = t", by = "u"})"));
+  EXPECT_EQ(rolling.what("y' = k*x'"), "the constraint hold");
+  EXPECT_EQ(rolling.what("y'' = lambda.hold"), "the equation of y");
+  EXPECT_EQ(rolling.compare("y' = 3*x'").with_numbers, "k = 3");
+}
+
+// No generic point is on these constraints, and for most values of one coordinate there is no value of the other one.
+TEST(Compare, PointsOfConstraintsFarFromGenericOnes) {
+  const std::pair<const char*, const char*> cases[] = {{"x^2 + y^2 = 0.01", "x"},
+                                                       {"(x - 5)^2 + (y - 7)^2 = 1", "x"},
+                                                       {"exp(x) + exp(y) = 1/10", "x"},
+                                                       {"sin(x) + sin(y) = 199/100", "x"},
+                                                       {"x'^2 + y'^2 = 0.0001", "x'"}};
+  for (const auto& [constraint, top] : cases) {
+    Compared s(std::string("coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + "
+                           "y*ey\"}]\ngravity.field = \"-9.81*ey\"\n[[constraint]]\nname = \"c\"\nequation = \"") +
+               constraint + "\"\n");
+    const std::string reaction = std::string("lambda*partial(phi, ") + top + ")";
+    EXPECT_EQ(s.what("x'' = " + reaction), "the equation of x") << constraint;
+    EXPECT_EQ(s.compare("phi = 0").verdict, Verdict::proved) << constraint;
+    EXPECT_EQ(s.compare("x'' = 2*" + reaction).verdict, Verdict::refuted) << constraint;
+    EXPECT_EQ(s.compare("x = y").verdict, Verdict::refuted) << constraint;
+  }
+  // This constraint has values near the start alone.
+  Compared s(R"toml(coordinates = ["x", "y"]
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+constraint = [{name = "c", equation = "sqrt(x - 100) + sqrt(y - 100) = 1"}]
+initial = {x = 100.25, guess = {y = 100.25}}
+)toml");
+  EXPECT_EQ(s.compare("2*x''*sqrt(x - 100) = lambda").verdict, Verdict::proved);
+  EXPECT_EQ(s.compare("x''*sqrt(x - 100) = lambda").verdict, Verdict::refuted);
+}
+
+// The redundant constraint holds at a single point, where it depends on the other one.
+TEST(Compare, ASingularPointRefutesNothing) {
+  Compared s(R"toml(coordinates = ["x", "y"]
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+constraint = [{name = "a", equation = "y = 0"}, {name = "b", equation = "y + x^2 = 0"}]
+)toml");
+  for (const char* const equation : {"x = 0", "y = 0", "x^2 = 0", "x' = 0"})
+    EXPECT_NE(s.compare(equation).verdict, Verdict::refuted) << equation;
+  EXPECT_EQ(s.compare("x' = 1").verdict, Verdict::unknown);
+}
+
+// The second constraint follows from the first one: solving both for x' and y' divides by zero.
+TEST(Compare, ConstraintsThatDependOnEachOtherOnTheManifold) {
+  Compared s(R"toml(coordinates = ["x", "y"]
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+constraint = [{name = "a", equation = "x^2 + y^2 = 1"}, {name = "b", equation = "(x^2 + y^2 - 1)*(x - 3) = 0"}]
+initial = {x = 0.6, guess = {y = 0.8}}
+)toml");
+  EXPECT_EQ(s.compare("x' = 0").verdict, Verdict::unknown);
+}
+
+TEST(Compare, NoPointOfAMotion) {
+  Compared s(R"toml(coordinates = ["x", "y"]
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+constraint = [{name = "c", equation = "x^2 + y^2 = -1"}]
+)toml");
+  EXPECT_EQ(s.what("x'' = lambda*y"), "unknown no point of a motion was found");
+}
+
+// Numbers of the file are printed as they are written.
+TEST(Compare, NumbersOfTheFileAreExact) {
+  Compared s(R"toml(coordinates = ["th"]
+parameters = {g = "9.81 m/s^2", m = "200 g", v = "1 km/h", l = 0.12345678901234567891}
+particle = [{name = "p", mass = "m", position = "l*(sin(th)*ex - cos(th)*ey)"}]
+gravity.field = "-g*ey"
+dissipation.R = "v*th'^2/2"
+)toml");
+  EXPECT_EQ(s.compare("0.2*(l^2*th'' + 9.81*l*sin(th)) = -5/18*th'").with_numbers, "g = 9.81, m = 0.2, v = 5/18");
+  EXPECT_EQ(s.compare("m*l^2*th'' + m*g*0.12345678901234567891*sin(th) = -v*th'").with_numbers,
+            "l = 0.12345678901234567891");
+}
+
 TEST(Compare, ParametersFollowOthers) {
   Compared s(R"toml(coordinates = ["th"]
 parameters = {m = 2, R = 0.3, J = "m*R^2/2", k = "4*m", c = 8}
@@ -226,6 +314,25 @@ constraint = [{name = "jerk", equation = "D(x,3)^2 + D(y,3)^2 = 9"}]
   EXPECT_EQ(s.compare("m^2*(x''^2 + (y'' + g)^2) = 9*lambda^2").verdict, Verdict::refuted);
   EXPECT_EQ(s.compare("3*x'' = sqrt(x''^2 + (y'' + g)^2)*D(x,3)").verdict, Verdict::refuted);  // of one sign of lambda
   EXPECT_EQ(s.compare("D(x,4) = D(y,3)").verdict, Verdict::refuted);
+}
+
+// Products of accelerations are no combination of equations that are linear in these.
+TEST(Compare, PolynomialConsequences) {
+  Compared s(R"toml(coordinates = ["x", "y"]
+parameters = {m = 2, b = -3, s = "1/2"}
+particle = [{name = "p", mass = "m", position = "x*ex + y*ey"}]
+constraint = [{name = "c", equation = "x''' + s*y''' = b*x'"}]
+)toml");
+  const std::string consequence = "a consequence of the equations of motion and the constraints";
+  EXPECT_EQ(s.compare("y'' = s*x''").verdict, Verdict::proved);
+  EXPECT_EQ(s.what("y''*x''' = x''*y'''"), consequence);
+  EXPECT_EQ(s.compare("y''*x''' = 2*x''*y'''").verdict, Verdict::refuted);
+  Compared z(R"toml(coordinates = ["x", "y", "z"]
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey + z*ez"}]
+constraint = [{name = "a", equation = "x''' = y"}, {name = "b", equation = "z = y^2"}]
+)toml");
+  EXPECT_EQ(z.what("x'''^2 = z"), consequence);
+  EXPECT_EQ(z.compare("x'''^2 = 2*z").verdict, Verdict::refuted);
 }
 
 }  // namespace
