@@ -31,7 +31,9 @@ struct StateName {
 
 // A function  x' = f(t, x, u, p)  with outputs  y = h(t, x, u, p).  p: the parameters of the model that do not follow from
 // others, without those whose values decide the order of the equations, such as a mass that is 0, or which constraints
-// with `active` hold. Immutable, cheap to copy, and safe to use from many threads. All numbers are in SI units.
+// with `active` hold. A power with an exponent of parameters has a value at every state if p makes the exponent a whole
+// number, and for positive bases otherwise. Immutable, cheap to copy, and safe to use from many threads. All numbers are in
+// SI units.
 class ANHOLON_API Dynamics {
  public:
   // What x holds: coordinates, velocities, higher derivatives, then the model's states.
@@ -102,7 +104,8 @@ class ANHOLON_API Dynamics {
 
   // The function as source text: a C file with name_rhs and, in CasADi's external interface, name and jac_name; a Python
   // module whose functions take the library for arrays as an argument.
-  // REQUIRES: linear, for C.
+  // REQUIRES: linear, for C. Throws std::domain_error if a power with a parameter in its exponent has no value at the
+  // start, where the formulas need one.
   enum class Source : std::uint8_t { casadi, formulas };
   std::string source(Source kind, const std::string& name = "motion") const;
 

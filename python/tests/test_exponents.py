@@ -97,6 +97,31 @@ def test_exponents_in_inputs_and_exponents_that_follow_from_others() -> None:
     assert f.output(0, x)[0] == pytest.approx(2.25) and f.output(0, x, p={"n": 4})[0] == pytest.approx(-(1.5**3))
 
 
+def test_independent_velocities_with_an_exponent() -> None:
+    text = """coordinates = ["x", "y"]
+parameters = {n = 3}
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+constraint = [{name = "c", equation = "y' = x^n*x'"}]
+initial = {x = START, "x'" = 0.3}
+"""
+    for start in (0.5, -0.5):
+        f = an.loads(text.replace("START", str(start))).dynamics()
+        assert f.minimal
+        for n in (3, 2):
+            for x in (0.7, -0.7):
+                state = f.state(q={"x": x, "y": 0}, qdot={"x'": 0.4, "y'": 0.4 * x**n}, p={"n": n})
+                rates = f(0, state, p={"n": n})
+                if n == 2 and start < 0:  # no function for all exponents tells whether the velocity is the same one
+                    assert np.isnan(rates).all() or rates[1] == pytest.approx(0.4 * x**n, rel=1e-12)
+                else:
+                    np.testing.assert_allclose(rates[:2], [0.4, 0.4 * x**n], rtol=1e-12)
+        if start > 0:
+            np.testing.assert_allclose(f.formulas.numpy()(0, f.start, [], f.p0)[0], f(0, f.start), atol=1e-15)
+        else:
+            with pytest.raises(ValueError, match="exponent has no value at the start"):
+                f.c_code()
+
+
 def test_sympy_has_powers_with_parameters_as_exponents() -> None:
     pytest.importorskip("sympy")
     text = """coordinates = ["x"]

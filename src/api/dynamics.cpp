@@ -1,6 +1,7 @@
 #include "anholon/dynamics.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -139,10 +140,36 @@ Dynamics::Data::with_exponents(const inner::ExponentValues::Values& values) cons
   } catch (const inner::Failure&) {
     return nullptr;
   }
-  const auto same = [](const StateName& a, const StateName& b) { return a.name == b.name && a.meaning == b.meaning; };
-  const bool fits = std::equal(states.begin(), states.end(), made->states.begin(), made->states.end(), same) &&
-                    made->function->free_parameters() == function->free_parameters() && made->inputs == inputs;
+  const auto name = [](const StateName& of) { return of.name; };
+  const bool fits = std::ranges::equal(states, made->states, {}, name, name) && made->inputs == inputs &&
+                    made->function->free_parameters() == function->free_parameters() && same_velocities(*made);
   return fits ? made : nullptr;
+}
+
+bool Dynamics::Data::same_velocities(const Data& made) const {
+  // These formulas differ by round-off of numbers of size 1 if they are the same.
+  constexpr double kRoundOff = 1e-9;
+  const auto meaning = [](const StateName& of) { return of.meaning; };
+  if (std::ranges::equal(states, made.states, {}, meaning, meaning)) return true;
+  // The formulas hold exponents. Those with parameters as exponents have to give the same velocities.
+  const Data* general = made.put_in.empty() ? &made : found({});
+  const Data& other = made.put_in.empty() ? *this : made;
+  if (!general) return false;
+  std::vector<double> p;
+  for (const std::size_t i : function->free_parameters()) {
+    const auto value = made.put_in.find(i);
+    p.push_back(value == made.put_in.end() ? static_cast<double>(function->parameters()[i]) : value->second);
+  }
+  const double t = function->start_time();
+  auto [q, qd, z] = function->to_motion(t, function->start());
+  for (int k = 0; k < 3; ++k) {
+    const std::vector<double> a = general->function->from_motion(t, q, qd, z, p),
+                              b = other.function->from_motion(t, q, qd, z, p);
+    for (std::size_t i = 0; i < a.size(); ++i)
+      if (!(std::abs(a[i] - b[i]) <= kRoundOff * (1 + std::abs(a[i])))) return false;
+    for (std::size_t i = 0; i < qd.size(); ++i) qd[i] += std::sin(static_cast<double>(i) + k + 1);
+  }
+  return true;
 }
 
 const Dynamics::Data* Dynamics::Data::at(std::span<const double> p) const {
@@ -155,10 +182,16 @@ const Dynamics::Data* Dynamics::Data::at(std::span<const double> p) const {
 const Dynamics::Data* Dynamics::Data::for_exponents(const inner::ExponentValues::Values& wanted) const {
   if (wanted == put_in) return this;
   const std::lock_guard lock(mutex_);
+  return found(wanted);
+}
+
+const Dynamics::Data* Dynamics::Data::found(const inner::ExponentValues::Values& wanted) const {
+  if (wanted == put_in) return this;
   const auto known = others_.find(wanted);
   if (known != others_.end()) return known->second.get();
   if (others_.size() >= kMostExponents && !wanted.empty()) return nullptr;
-  return others_.emplace(wanted, with_exponents(wanted)).first->second.get();
+  const std::shared_ptr<const Data> made = with_exponents(wanted);
+  return others_.emplace(wanted, made).first->second.get();
 }
 
 std::string
@@ -166,16 +199,20 @@ Dynamics::Data::text_with_exponents(const std::function<std::string(const inner:
   const std::lock_guard lock(mutex_);
   if (!with_exponents_) {
     Data made(system, options);
-    bool fails = true;
     try {
-      fails = open_scenario(made, this).has_value();
+      if (!open_scenario(made, this)) {
+        inner::Workspace own(*made.scenario);
+        with_exponents_ =
+            std::make_unique<inner::RateFormulas>(inner::rate_formulas_of(own, *function, made.formulas, made.open));
+      }
     } catch (const inner::Failure&) {
     }
-    if (fails) throw std::runtime_error("formulas with exponents that are parameters have no value at the start");
-    inner::Workspace own(*made.scenario);
-    with_exponents_ =
-        std::make_unique<inner::RateFormulas>(inner::rate_formulas_of(own, *function, made.formulas, made.open));
   }
+  if (!with_exponents_)
+    throw std::domain_error(
+        "a power with a parameter in its exponent has no value at the start, where the equations need one for formulas "
+        "that hold for all parameters\nhint: give a start at which its base is positive, in Python "
+        "dynamics(initial={…})");
   return text(*with_exponents_);
 }
 

@@ -124,7 +124,7 @@ struct Dynamics::Data {
   // nullptr if there is none.
   const Data* for_exponents(const inner::ExponentValues::Values& wanted) const;
   // Returns the text of the formulas in which no exponent is put in, which hold for all parameters. Throws
-  // std::runtime_error if there are none.
+  // std::domain_error if there are none.
   std::string text_with_exponents(const std::function<std::string(const inner::RateFormulas&)>& text) const;
 
   // Computes `rows` numbers for each state of a batch: calls f(data, batch, out) with the function for the exponents of
@@ -166,8 +166,13 @@ struct Dynamics::Data {
 
  private:
   static constexpr std::size_t kMostExponents = 64;  // the most functions for other exponents
+  // The same as for_exponents. REQUIRES: mutex_ is locked.
+  const Data* found(const inner::ExponentValues::Values& wanted) const;
   // Derives the function for these values. Returns nullptr if it has no solution at the start, or another state.
+  // REQUIRES: mutex_ is locked.
   std::shared_ptr<const Data> with_exponents(const inner::ExponentValues::Values& values) const;
+  // True if another function has the independent velocities of this one. REQUIRES: mutex_ is locked.
+  bool same_velocities(const Data& made) const;
 
   mutable std::once_flag once_;
   mutable std::unique_ptr<const inner::FormulaValues> values_;

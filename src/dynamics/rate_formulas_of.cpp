@@ -112,7 +112,9 @@ class Builder {
     std::string unused;
     const auto q =
         quasi_velocities(s, *s_.mechanics, others, [&](const Node& symbol) { return of_.at_start(symbol); }, unused);
-    ANHOLON_ASSERT(q && q->count + z + n == of_.states().size());
+    // Exponents that are parameters may leave the formulas without values at the start, by which velocities are chosen.
+    if (!q || q->count + z + n != of_.states().size())
+      throw Failure({}, "the formulas have no values at the start by which independent velocities are chosen");
     f_.model = q->system.model;
     Graph& g = *f_.model->graph;
     const auto written = [&](Expr e) { return written_out(e, n, q->system.rates); };
