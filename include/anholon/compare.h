@@ -22,7 +22,8 @@ struct Suggestion {
 struct ComparedEquation {
   std::string label, text;
   Verdict verdict = Verdict::unknown;  // proved: true; refuted: false
-  // true: the kind of the equation. false: the nearest true equation; empty if it holds at some points and fails at others.
+  // true: the kind of the equation. false: the nearest true equation; empty if it holds at some points and fails at
+  // others, or none is near.
   std::string what;
   std::string difference;  // false: left - right less the nearest true equation; empty if there is none
   std::string detail;      // false: left - right at the point; unknown: why

@@ -49,7 +49,9 @@ void bind_compare(nb::module_& m) {
           "Of a true equation: its kind.")
       .def_prop_ro(
           "nearest", [](const ComparedEquation& e) { return e.verdict == Verdict::refuted ? e.what : std::string(); },
-          "Of a false equation: the nearest true one; empty if it holds at some points and fails at others.")
+          "Of a false equation: the nearest true one; empty if it holds at some points and fails at others, or has no "
+          "term "
+          "in common with any.")
       .def_ro("difference", &ComparedEquation::difference,
               "Of a false equation: left - right less the nearest true one; empty if there is none.")
       .def_ro("detail", &ComparedEquation::detail,
@@ -64,6 +66,8 @@ void bind_compare(nb::module_& m) {
         std::string text = e.label + ": " + truth(e.verdict);
         if (e.verdict == Verdict::refuted && !e.suggestions.empty()) return text + ", " + e.suggestions[0].text;
         if (!e.with_numbers.empty()) return text + ", it holds with the file's numbers " + e.with_numbers;
+        if (e.what.empty() && e.verdict == Verdict::refuted)
+          return text + ", left - right is " + e.detail + " at a point";
         return text + ", " +
                (e.verdict == Verdict::unknown ? e.detail : (e.verdict == Verdict::proved ? "" : "nearest: ") + e.what);
       });

@@ -114,7 +114,7 @@ class Comparer::Nearest {
     std::vector<std::size_t> seen;
     for (std::size_t k = 0; k < offers_.size() && seen.size() < kPrinted; ++k) {
       const Offer& o = offers_[k];
-      if (std::find(seen.begin(), seen.end(), o.of) != seen.end()) continue;
+      if (std::find(seen.begin(), seen.end(), o.of) != seen.end() || (o.of != identity_ && !is_near(o))) continue;
       seen.push_back(o.of);
       const Expr difference = arranged(o.difference, c_.names_);
       const std::size_t length = o.weight * print(difference, c_.names_, Format::text).size();
@@ -137,6 +137,11 @@ class Comparer::Nearest {
   };
 
   std::size_t next_equation() { return ++of_; }
+  // True unless the difference is longer than P and than the offered equation.
+  bool is_near(const Offer& o) {
+    if (!length_) length_ = monomials(P_, c_.names_);
+    return o.length <= o.weight * std::max(*length_, monomials(P_ - o.difference, c_.names_));
+  }
   // Offers an equation. Weaker statements count as longer: a combination, a constraint beside an equation of motion.
   void offer(Expr difference, const std::string& what, std::size_t weight) {
     offers_.push_back({weight * monomials(difference, c_.names_), weight, of_, difference, what});
@@ -168,11 +173,13 @@ class Comparer::Nearest {
   Column by_, p_by_;  // the symbols by which factors are found, and dP/d of these
   std::vector<Offer> offers_;
   std::size_t of_ = 0, identity_ = 0;
+  std::optional<std::size_t> length_;  // of P
 };
 
 void Comparer::nearest(Expr P, Comparison& out) {
   EquationsOfMotion& motion = this->motion(order_of_motion(P));
-  if (motion.anywhere().empty()) return;
+  // Numbers alone are near every equation that contains one.
+  if (motion.anywhere().empty() || is_number(P)) return;
   Nearest nearest(*this, motion, P);
   for (const DerivedEquation& e : motion.lower) nearest.offer_derived(e);
   for (const DerivedEquation& e : motion.rows) nearest.offer_derived(e);

@@ -27,13 +27,14 @@ void print_text(const EquationFinding& f, std::size_t width, const SourceText& s
   say(stdout, "%-*s  %-7s %s\n", static_cast<int>(width), f.label.c_str(), truth(f.verdict),
       f.verdict == Verdict::proved    ? f.what.c_str()
       : f.verdict == Verdict::unknown ? f.detail.c_str()
-      : f.what.empty()                ? "it does not hold at all points of the motion"
+      : f.in_places                   ? "it does not hold at all points of the motion"
+      : f.what.empty()                ? "no derived equation is near it"
                                       : ("nearest: " + f.what).c_str());
   if (f.verdict == Verdict::unknown && !f.with_numbers.empty())
     say(stdout, "%sholds with the file's numbers %s; no proof for all values was found\n", indent.c_str(),
         f.with_numbers.c_str());
   if (f.verdict != Verdict::refuted) return;
-  if (f.what.empty()) {
+  if (f.in_places) {
     say(stdout, "%sleft - right = %s at %s\n", indent.c_str(), f.detail.c_str(), f.point.value_or("").c_str());
     return;
   }

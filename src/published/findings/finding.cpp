@@ -54,7 +54,8 @@ std::string FoundChange::text() const {
 const char* truth(Verdict v) { return v == Verdict::proved ? "true" : v == Verdict::refuted ? "false" : "unknown"; }
 
 EquationFinding finding_of(const PublishedEquation& e, const Comparison& c, const SymbolNames& names) {
-  EquationFinding f{e.label, e.text(), c.verdict, c.what, {}, c.identity, c.detail, {}, {}, c.with_numbers};
+  EquationFinding f{e.label,  e.text(), c.verdict, c.what,         {},         c.identity,
+                    c.detail, {},       {},        c.with_numbers, c.in_places};
   if (c.difference) f.difference = print(*c.difference, names, Format::text);
   if (c.witness) f.point = point_text(*c.witness, names);
   std::vector<Change> changes = c.changes;

@@ -28,6 +28,7 @@ struct EquationFinding {
   std::optional<std::string> point;       // if false, the values of the symbols, "x = 1/2, …"
   std::vector<FoundChange> changes;
   std::string with_numbers;  // if false or unknown, the numbers of the file with which the equation holds
+  bool in_places = false;    // if false, true for an equation that holds at some points of the motion
 };
 
 EquationFinding finding_of(const PublishedEquation& equation, const Comparison& comparison, const SymbolNames& names);

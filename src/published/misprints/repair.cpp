@@ -23,7 +23,8 @@ class Repair {
   Repair(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet, Comparer& comparer)
       : equation_(equation), words_(words), comparer_(comparer), syntax_(difference_of(equation)),
         motion_(comparer.motion_for_changes(words.number(syntax_))), trial_(syntax_, words, motion_.on_motion()) {
-    for (Edit& e : edits_of(syntax_, words, alphabet, motion_.highest)) trial_.add(std::move(e));
+    for (Edit& e : edits_of(syntax_, words, alphabet, motion_.highest))
+      if (!is_zero_factor(e)) trial_.add(std::move(e));
   }
 
   std::vector<Change> run() {
@@ -38,6 +39,32 @@ class Repair {
     Syntax syntax;
     Change change;
   };
+
+  // True for a factor that vanishes on the motion: it makes every equation true.
+  bool is_zero_factor(const Edit& e) {
+    if (e.kind != Edit::Kind::factor || motion_.on_motion().empty()) return false;
+    try {
+      return vanishes(words_.number(e.with), motion_.on_motion());
+    } catch (const Failure&) {  // not a number
+      return false;
+    }
+  }
+
+  // True if a whole side gets a factor that the other side has as well: such factors make any two sides equal.
+  bool has_common_factor(const Syntax& changed, const std::vector<const Edit*>& edits) const {
+    return std::any_of(edits.begin(), edits.end(), [&](const Edit* e) {
+      return e->kind == Edit::Kind::factor && !e->in_function && innermost_term(syntax_, e->path) == 1 &&
+             has_factor(changed.args[1 - e->path[0]], print(e->with));
+    });
+  }
+  static bool has_factor(const Syntax& s, const std::string& factor) {
+    if (print(s) == factor) return true;
+    if (s.op == Syntax::Op::negate || s.op == Syntax::Op::power) return has_factor(s.args[0], factor);
+    if (s.op != Syntax::Op::multiply) return false;
+    for (std::size_t i = 0; i < s.args.size(); ++i)
+      if ((i == 0 || s.operators[i - 1].op == Syntax::Op::multiply) && has_factor(s.args[i], factor)) return true;
+    return false;
+  }
 
   // Judges the likely changes first, and the others only if none of these is accepted.
   void judge(const std::vector<Misprint>& list) {
@@ -84,6 +111,7 @@ class Repair {
     for (std::uint32_t i : m.edits) edits.push_back(&trial_.edit(i));
     if (has_two_numbers_in_one_term(edits)) return;
     Syntax syntax = edited(syntax_, 0, edits);
+    if (has_common_factor(syntax, edits)) return;
     Expr whole, left;
     try {
       whole = words_.number(syntax);

@@ -331,5 +331,32 @@ TEST(Repair, WrongTerm) {
   EXPECT_FALSE(r.compare("m*x'' = m*(2*w*y' + w'*y + w^2*x)").wrong_term);
 }
 
+// Factors that make any two sides equal are no correction, and an equation without common terms is not near.
+TEST(Repair, NoFactorsForAnyTwoSides) {
+  Repaired r(R"toml(coordinates = ["x", "y", "th"]
+input = {u = {}}
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}, {name = "q", mass = 1, position = "th*ez"}]
+force = [{on = "p", vector = "u*ex"}]
+constraint = [{name = "hold", equation = "x = 1", by = "u"}]
+)toml");
+  for (const char* const wrong : {"y*th = 1", "1 = 2"}) {
+    const Comparison c = r.compare(wrong);
+    EXPECT_EQ(c.verdict, Verdict::refuted) << wrong;
+    EXPECT_TRUE(c.changes.empty()) << wrong << ": " << c.changes[0].equation;
+  }
+  EXPECT_EQ(r.readings("y = th"), Texts{"y'' = th''"});
+  EXPECT_EQ(r.readings("y = 0"), Texts{"y'' = 0"});
+  EXPECT_EQ(r.compare("1 = 2").what, "");
+  EXPECT_FALSE(r.compare("1 = 2").difference);
+  EXPECT_FALSE(r.compare("1 = 2").wrong_term);
+  Repaired pendulum(R"toml(coordinates = ["x", "th"]
+parameters = {M = 2, m = 1, l = 0.5, g = 9.81}
+gravity.field = "-g*ey"
+particle = [{name = "a", mass = "M", position = "x*ex"}, {name = "b", mass = "m", position = "x*ex + l*rotz(th).x"}]
+)toml");
+  for (const char* const wrong : {"x = th", "x = 1", "x' = th'", "x*th = 1", "x = x^2"})
+    EXPECT_TRUE(pendulum.compare(wrong).changes.empty()) << pendulum.compare(wrong).changes[0].equation;
+}
+
 }  // namespace
 }  // namespace anholon::repair_test
