@@ -53,7 +53,7 @@ class Repair {
   // True if a whole side gets a factor that the other side has as well: such factors make any two sides equal.
   bool has_common_factor(const Syntax& changed, const std::vector<const Edit*>& edits) const {
     return std::any_of(edits.begin(), edits.end(), [&](const Edit* e) {
-      return e->kind == Edit::Kind::factor && innermost_term(syntax_, e->path) == 1 &&
+      return e->kind == Edit::Kind::factor && !e->in_function && innermost_term(syntax_, e->path) == 1 &&
              has_factor(changed.args[1 - e->path[0]], print(e->with));
     });
   }
