@@ -32,7 +32,10 @@ class ReportWriter {
     } else if (!r.no_error.empty()) {
       j_.key("error_estimate").open_object().key("digits").null().key("reason").string(r.no_error).close();
     }
-    if (r.looks_for_events) events(r.events);
+    if (r.looks_for_events) {
+      j_.key("events");
+      events(r.events);
+    }
     watched("conserved", r.conserved);
     watched("monitors", r.monitors);
     notes(r);
@@ -44,6 +47,28 @@ class ReportWriter {
     number("t", r.t);
     j_.key("outcome").string(name(r.outcome.kind));
     if (!r.outcome.ok()) j_.key("message").string(r.outcome.message).key("hint").string(r.outcome.hint);
+  }
+
+  void events(const std::vector<EventReport>& list) {
+    j_.open_array();
+    for (const EventReport& e : list) {
+      j_.open_object().key("name").string(e.name);
+      number("t", e.t);
+      if (!e.changes.empty()) {
+        j_.key("set").open_object();
+        for (const EventReport::Change& c : e.changes) {
+          j_.key(c.name).open_object();
+          number("before", c.before);
+          number("after", c.after);
+          j_.close();
+        }
+        j_.close();
+        number("correction", e.correction);
+      }
+      if (e.stop) j_.key("stop").boolean(true);
+      j_.close();
+    }
+    j_.close();
   }
 
   void error(const ErrorReport& e) {
@@ -98,28 +123,6 @@ class ReportWriter {
     number("t", o.t);
     count("steps", o.steps);
     count("evaluations", o.evaluations);
-    j_.close();
-  }
-
-  void events(const std::vector<EventReport>& list) {
-    j_.key("events").open_array();
-    for (const EventReport& e : list) {
-      j_.open_object().key("name").string(e.name);
-      number("t", e.t);
-      if (!e.changes.empty()) {
-        j_.key("set").open_object();
-        for (const EventReport::Change& c : e.changes) {
-          j_.key(c.name).open_object();
-          number("before", c.before);
-          number("after", c.after);
-          j_.close();
-        }
-        j_.close();
-        number("correction", e.correction);
-      }
-      if (e.stop) j_.key("stop").boolean(true);
-      j_.close();
-    }
     j_.close();
   }
 
@@ -381,6 +384,20 @@ std::string report_json(const SimulationReport& r) {
   j.open_object().key("model").string(r.model).key("form").string(r.form);
   ReportWriter(j).write(r);
   return j.close().text();
+}
+
+std::string events_json(const std::vector<EventReport>& events) {
+  JsonWriter j;
+  ReportWriter(j).events(events);
+  return j.text();
+}
+
+std::vector<EventReport> read_events(const std::string& json) {
+  std::vector<EventReport> events;
+  Json j;
+  DigitKeeper keeper(j);
+  if (Json::sax_parse(json, &keeper)) each(j, [&](const Fields& e) { events.push_back(event(e)); });
+  return events;
 }
 
 std::optional<SimulationReport> read_report(const std::string& json) {

@@ -15,6 +15,10 @@ std::string report_json(const SimulationReport& report);
 // Returns nullopt if the text is not the report of a run that has ended. A missing number is NaN.
 std::optional<SimulationReport> read_report(const std::string& json);
 
+// Returns the events of a report as an array, and reads them.
+std::string events_json(const std::vector<EventReport>& events);
+std::vector<EventReport> read_events(const std::string& json);
+
 // Writes the keys of an error estimate into an open object.
 void write_error(JsonWriter& j, const ErrorReport& error);
 

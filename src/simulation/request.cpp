@@ -59,7 +59,7 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
   for (const WrittenTime& t : at) o.at.push_back(t.value);
   if (!of_file(at))
     for (const WrittenTime& t : at) o.at_text.push_back(is_number_as_written(t.text) ? t.text : "");
-  if (!o.at.empty() && o.at.front() < start && o.at.back() > start)
+  if (!o.at.empty() && !o.to && o.at.front() < start && o.at.back() > start)
     throw Failure({}, "the time " + o.at.front().get_str() + " lies before the start, t = " + start.get_str());
   if (!o.at.empty() && o.every)
     throw Failure({}, asker.called("at") + " and " + asker.called("every") + " exclude each other",

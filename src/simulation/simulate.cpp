@@ -9,6 +9,7 @@
 #include "simulation/first_pull.h"
 #include "simulation/followed_value.h"
 #include "simulation/lost_value.h"
+#include "simulation/report_json.h"
 #include "simulation/run_end.h"
 #include "simulation/run_rows.h"
 #include "simulation/trust.h"
@@ -159,6 +160,7 @@ class Run {
     for (const double* x : carried()) worst.push_back(*x);
     angles_.save(angles);
     to.set_numbers("residuals", worst);
+    to.set("events", {events_json(report_.events)});
     to.set_numbers("angles", angles);
     o_.save(to);
   }
@@ -175,6 +177,7 @@ class Run {
     const std::vector<double*> residuals = carried();
     const std::vector<double> worst = from.numbers<double>("residuals", residuals.size());
     for (std::size_t i = 0; i < worst.size(); ++i) *residuals[i] = worst[i];
+    if (from.has("events")) report_.events = read_events(from.one("events"));
     angles_.set_parameters(doubles(motion().parameters()));
     angles_.resume(from.numbers<double>("angles", angles_.saved()));
     rows_.begin(RowSchedule<W>(o_, start, given_until));

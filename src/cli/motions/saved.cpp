@@ -48,7 +48,8 @@ SavedRun continued(SimulateCommand& o) {
 void same_model(const SavedRun& run, const Reader& in) {
   with_file("the saved run", [&] {
     if (run.one("model") != model_hash(in.source))
-      throw UsageError{"error: the saved run is of another model ('" + run.one("title") + "'), or " + in.source.name +
+      throw UsageError{"error: the saved run is of another model" +
+                       (run.one("title").empty() ? "" : " ('" + run.one("title") + "')") + ", or " + in.source.name +
                        (in.source.others.empty() && in.source.tables.empty() ? "" : " or a file that it reads") +
                        " has changed since\nhint: only the same model goes on with the same bits; to start from a "
                        "state, give it in [initial]\n"};

@@ -245,6 +245,21 @@ class Solutions {
   std::vector<ContactSolution> list_;
 };
 
+// Returns the solution near modes of least constraint. These modes cannot tell contacts that static friction barely holds
+// from contacts that begin to slip. Contacts stick if they can.
+std::optional<ContactSolution> near(const ContactProblem& p, const Solutions& solutions, const ContactModes& modes) {
+  ContactModes held = modes;
+  bool any = false;
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    if (modes[c].touch != Touch::slips || !rows.rough || rows.moves || !rows.may_stick) continue;
+    held[c].touch = Touch::sticks, any = true;
+  }
+  if (any)
+    if (auto f = solutions.judge(held)) return f;
+  return solutions.settle(modes);
+}
+
 }  // namespace
 
 std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
@@ -269,7 +284,7 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
     const auto [at, first] = found.try_emplace(touches, false);
     if (first)
       if (const auto guess = modes_of_least_constraint(p, touches))
-        if (const auto f = solutions.settle(*guess)) at->second = true, solutions.add(*f);
+        if (const auto f = near(p, solutions, *guess)) at->second = true, solutions.add(*f);
     if (at->second) continue;
     // A second solution with the same touching contacts would be the same motion.
     if (const auto f = solutions.judge(modes); f && !solutions.slips_by_round_off(*f))
