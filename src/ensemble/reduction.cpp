@@ -361,7 +361,8 @@ namespace {
 // A part of a step.
 struct Piece {
   double from, to;
-  int depth;  // the number of halvings
+  int depth;         // the number of halvings
+  double error = 0;  // of the interpolation over twice the piece; 0 if there is none
 };
 
 // Returns the pieces between these points, the first one last.
@@ -430,10 +431,11 @@ void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
       s.lost = !divisible || (p.depth >= kLongWithout && there.beyond_motion() == 0 &&
                               there.without_value() == Interpolation::kPoints);
     }
-    const bool good = there.good(tolerance_ * size) && ends_as(there, p);
     const auto [lowest, highest] = std::minmax_element(there.values().begin(), there.values().end());
+    const bool good = (there.good(tolerance_ * size) || there.is_noisy(p.error)) && ends_as(there, p);
     if (!good && divisible && (there.without_value() > 0 || matters(*lowest, *highest, p.to - p.from))) {
-      left.push_back({middle, p.to, p.depth + 1}), left.push_back({p.from, middle, p.depth + 1});
+      left.push_back({middle, p.to, p.depth + 1, there.error()});
+      left.push_back({p.from, middle, p.depth + 1, there.error()});
       continue;
     }
     if (s.lost) break;

@@ -165,18 +165,19 @@ bool StepEnd<N>::shows_events(PresentStep<N>& step, const EventWatch<N>& events,
          shows(h);
 }
 
-// Returns the time by which a step ends past a kink. The time of a kink is as inexact as the series are there, whose
-// errors fall with the order of the step: at the end of the step they are those of the tolerance. If the motion meets the
-// kink again, the errors of the state are larger, and the tolerance counts in full.
+// Returns the time by which a step of length h ends past a kink. It is relative to the length up to the kink, or, if the
+// motion meets the kink again or an event may be near, to that of the whole step.
 template <Number N>
-Wider<N> StepEnd<N>::past_kink(const Kink<N>& kink, const W& t, const W& where, const W& h) const {
-  const auto past = [&](const W& length, double part) {
+Wider<N> StepEnd<N>::past_kink(const EventWatch<N>& events, const Kink<N>& kink, const W& t, const W& where,
+                               const W& h) const {
+  const auto past = [&](const W& length) {
     return W(convert<W>(unit_roundoff<N>()) * W(kPastKink) * std::max(W(abs(t)), W(abs(length))) +
-             W(std::exp(log_tolerance_) * part) * abs(h));
+             W(std::exp(log_tolerance_)) * abs(length));
   };
-  const W most = past(h, 1);
+  const W most = past(h);
   if (!kink.ahead || kink.at_start || in_a_row_.met_again > 0 || !(abs(where) > most * W(4))) return most;
-  return past(where, std::pow(std::min(1.0, std::abs(to_double(W(where / h)))), order_ - 1));
+  if (!events.empty() && events.may_pass_near(convert<N>(t), convert<N>(where), convert<N>(most))) return most;
+  return past(where);
 }
 
 template <Number N>
@@ -203,7 +204,7 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
       kink = first_kink<N>(step.series().machine(), slots_, order_ - 1, convert<N>(h), !kernel,
                            others_.give_up ? others_.slots : others_.passed_over);
     where = kink.at_start ? W(0) : kink.ahead ? convert<W>(kink.where) : h;
-    past = past_kink(kink, t, where, h);
+    past = past_kink(events, kink, t, where, h);
     // Beyond a kink other functions hold.
     looked_ = kink.ahead ? W(where - (forward ? past : W(-past))) : where;
     if (!(abs(where) > past)) looked_ = W(0);

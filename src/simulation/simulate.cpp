@@ -160,9 +160,18 @@ class Run {
     for (const double* x : carried()) worst.push_back(*x);
     angles_.save(angles);
     to.set_numbers("residuals", worst);
-    to.set("events", {events_json(report_.events)});
+    to.set("events", {events_json(events_before_step())});
     to.set_numbers("angles", angles);
     o_.save(to);
+  }
+
+  // The events before the last step, which the continued run makes again.
+  std::vector<EventReport> events_before_step() {
+    std::vector<EventReport> list = report_.events;
+    const W now = motion().stepper().time(), begun = motion().stepper().begun().motion.t;
+    if (!list.empty() && abs(W(now - last_events_.t)) < abs(W(now - begun)))
+      list.resize(list.size() - last_events_.count);
+    return list;
   }
 
   Outcome resume(const SavedRun& from) {
@@ -332,6 +341,7 @@ class Run {
         r.changes.push_back({c.name, written().written(c.before), written().written(c.after)});
       report_.events.push_back(std::move(r));
     }
+    last_events_ = {t, occurrences.size()};
     if (report_.outcome.ok()) report_.outcome = pace;
     judge_.events(occurrences);
     if (!goes_on || !report_.outcome.ok()) end_.reach(t);
@@ -449,6 +459,10 @@ class Run {
   std::optional<Defect> defect_;
   W work_{0};  // the greatest work so far at the start of a step
   SimulationReport report_;
+  struct {
+    W t{0};
+    std::size_t count = 0;
+  } last_events_;  // the events at the end of a step that were found last
   SimulationPlans plans_;  // the plans of the motion are in the motion
   RunRows<N> rows_;        // after the members that it uses
   RunEnd<N> end_;          // the last member, because it uses the others

@@ -246,13 +246,14 @@ class Solutions {
 };
 
 // Returns the solution near modes of least constraint. These modes cannot tell contacts that static friction barely holds
-// from contacts that begin to slip. Contacts stick if they can.
+// from contacts that begin to slip with less friction: such contacts stick if they can.
 std::optional<ContactSolution> near(const ContactProblem& p, const Solutions& solutions, const ContactModes& modes) {
   ContactModes held = modes;
   bool any = false;
   for (std::size_t c = 0; c < modes.size(); ++c) {
     const ContactRows& rows = p.contacts[c];
     if (modes[c].touch != Touch::slips || !rows.rough || rows.moves || !rows.may_stick) continue;
+    if (rows.friction == rows.static_friction) continue;
     held[c].touch = Touch::sticks, any = true;
   }
   if (any)

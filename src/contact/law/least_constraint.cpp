@@ -215,7 +215,7 @@ class LeastConstraint {
   // True if a contact slips: the relative distance of its force from the bound is smaller than its relative slip
   // acceleration.
   bool slips(std::size_t c) const {
-    constexpr Real kZero = 1e-2L;
+    constexpr Real kZero = 1e-10L;
     Real size = kZero * without_;
     for (std::size_t o = 0; o < touches_.size(); ++o)
       if (at_rest(o)) size = std::max(size, std::hypot(rate(o)[0], rate(o)[1]));

@@ -135,10 +135,18 @@ Interpolation::Interpolation(const std::function<FormulaValue(double)>& f, doubl
   }
 }
 
-bool Interpolation::good(double allowed) const {
+double Interpolation::error() const {
   constexpr int kLast = 3;
-  return without_value_ == 0 &&
-         std::all_of(terms_.end() - kLast, terms_.end(), [&](double x) { return std::abs(x) <= allowed + noise_; });
+  double most = 0;
+  for (auto x = terms_.end() - kLast; x != terms_.end(); ++x) most = std::max(most, std::abs(*x));
+  return most;
+}
+
+bool Interpolation::is_noisy(double error_of_twice) const {
+  constexpr double kSmall = 1e-5, kFalls = 3;
+  if (without_value_ > 0 || !(error_of_twice > 0)) return false;
+  const auto [lowest, highest] = std::minmax_element(values_.begin(), values_.end());
+  return error() < kSmall * (*highest - *lowest) && kFalls * error() > error_of_twice;
 }
 
 void Interpolation::polynomial(std::vector<double>& c) const {

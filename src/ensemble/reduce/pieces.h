@@ -30,8 +30,13 @@ class Interpolation {
   int beyond_motion() const { return beyond_motion_; }
   double size() const { return size_; }  // the greatest magnitude of a value
   double mean() const { return terms_[0]; }
+  // The greatest of the last terms.
+  double error() const;
+  // True if the last terms are the round-off of what the formula is made of: they are much smaller than its variation, and
+  // as large as those over a piece of twice the length.
+  bool is_noisy(double error_of_twice) const;
   // True if the last terms are below the allowed error, or below the round-off of the values.
-  bool good(double allowed) const;
+  bool good(double allowed) const { return without_value_ == 0 && error() <= allowed + noise_; }
   // Computes the coefficients of u^k for u from 0 to 1.
   void polynomial(std::vector<double>& c) const;
 

@@ -26,6 +26,26 @@ N value_of(const Hiding& f, const N& u) {
   return u < N(0) && std::fmod(f.exponent, 2) != 0 ? N(-size) : size;
 }
 
+// Returns where a slope changes its sign between two points. up: it is positive at `low`.
+template <Number N, class Slope>
+N turn(Slope slope, N low, N high, bool up) {
+  for (int k = 0; k < kHalvings; ++k) {
+    const N middle = (low + high) / N(2);
+    ((slope(middle) > N(0)) == up ? low : high) = middle;
+  }
+  return high;
+}
+
+// Returns the largest value of u between two points, or the least unless `up`.
+template <Number N, class Value>
+N extremum(Value u, N low, N high, bool up) {
+  for (int k = 0; k < kHalvings; ++k) {
+    const N third = (high - low) / N(3), a = low + third, b = high - third;
+    ((u(a) > u(b)) == up ? high : low) = (u(a) > u(b)) == up ? b : a;
+  }
+  return (low + high) / N(2);
+}
+
 }  // namespace
 
 // Bounds the change by a sum of absolute terms, as four partial sums that do not depend on each other.
@@ -57,6 +77,12 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
   for (int k = degree; k >= 1; --k) moves = (moves + abs(argument[k])) * length;
   const bool quotient = function.quotient();
   const auto u = [&](const N& x) { return value_at(argument, degree, x); };
+  // The slope along the step.
+  const auto slope_of = [&](const N& x) {
+    N slope(0);
+    for (int k = degree; k >= 1; --k) slope = slope * x + argument[k] * N(k);
+    return h > N(0) ? slope : N(-slope);
+  };
   const auto ask = [&](const N& x) {
     if (quotient) {
       if (abs(u(x)) < abs(argument[0]) * N(Hiding::kNearZero)) points.push_back(x);
@@ -82,7 +108,7 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
     }
   };
   const auto end_of = [&](int part) { return h * N(part) / N(kParts); };
-  N last = argument[0], rise = argument[1] * h;
+  N last = argument[0], rise = slope_of(N(0));
   for (int i = 1; i <= kParts; ++i) {
     const N here = u(end_of(i)), now = here - last;
     if ((last < N(0)) != (here < N(0))) {
@@ -103,19 +129,12 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
             points.push_back(x);
       }
     }
-    if (const bool up = rise > N(0); (now > N(0)) != up) {
-      // The argument turns within this part or the one before.
-      N low = end_of(std::max(0, i - 2)), high = end_of(i);
-      for (int k = 0; k < kHalvings; ++k) {
-        const N a = low + (high - low) / N(3), b = high - (high - low) / N(3);
-        if ((u(a) > u(b)) == up)
-          high = b;
-        else
-          low = a;
-      }
-      ask_around((low + high) / N(2), end_of(std::max(0, i - 2)), end_of(i));
-    }
-    rise = now;
+    const N slope = slope_of(end_of(i));
+    if (const bool up = rise > N(0); (slope > N(0)) != up || (now > N(0)) != up)
+      ask_around((slope > N(0)) != up ? turn(slope_of, end_of(i - 1), end_of(i), up)
+                                      : extremum(u, end_of(i - 1), end_of(i), up),
+                 end_of(i - 1), end_of(i));
+    rise = slope;
     last = here;
     if (i < kParts) ask(end_of(i));
   }

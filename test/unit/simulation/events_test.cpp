@@ -248,6 +248,7 @@ TEST(Events, RunsGoOnAcrossThemWithTheSameBits) {
       });
       EXPECT_EQ(second.rows.rows().back(), whole.rows.rows().back()) << half;
       EXPECT_EQ(test::of_the_motion(saved), test::of_the_motion(end)) << half;
+      EXPECT_EQ(second.report.events.size(), whole.report.events.size()) << half;
     }
   }
 }
