@@ -381,7 +381,7 @@ std::vector<Piece> pieces_between(const std::vector<double>& points, double h) {
 // The formula is unbounded if these values go far beyond all others, and its integral diverges if they weigh in spite
 // of the length of the pieces.
 void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
-  constexpr int kFirst = 2, kDeepest = 48, kTiny = 30, kLongWithout = 8, kMostPieces = 1000;
+  constexpr int kFirst = 2, kDeepest = 48, kTiny = 30, kShort = 20, kLongWithout = 8, kMostPieces = 1000;
   Seen& s = seen_[formula];
   const std::function<FormulaValue(double)> f = [&](double x) { return step.value(formula, x); };
   std::vector<Piece> left = pieces_between(hidden_, step.h);
@@ -420,7 +420,9 @@ void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
       // A motion that stops has no solution at the end of its last step.
       const bool all_beyond = there.beyond_motion() == Interpolation::kPoints && p.depth >= kLongWithout;
       if (all_beyond) s.beyond += p.to - p.from;
-      if (p.depth >= kTiny || all_beyond) {
+      // Round-off may take the values away over a short piece, such as that of sqrt(z) where z comes to 0.
+      const bool none_for_short = there.without_value() == Interpolation::kPoints && p.depth >= kShort;
+      if (p.depth >= kTiny || all_beyond || none_for_short) {
         const double length = std::abs(p.to - p.from);
         for (const double v : there.values()) {
           if (std::isinf(v)) (v > 0 ? most : fewest) = v;
