@@ -18,7 +18,7 @@ LEVEL = {
     "modelfile/motion": 5.4, "modelfile/check": 5.5, "modelfile": 5.6, "mechanics": 5.7,
     "formulation": 6, "formulation/forms/multipliers": 6.1, "formulation/forms/coordinates": 6.1,
     "formulation/forms/quasi_velocities": 6.1, "system": 7, "lowering": 7.5, "structure": 8, "proof/checker": 7.8, "proof": 8,
-    "program": 9, "emit": 9, "setup": 9.2, "setup/start": 9.1, "setup/words": 9.25, "kernel/plan": 9.4, "kernel": 9.5, "kernel/tiers": 9.6, "jit/x86": 9.9, "jit": 10,
+    "program": 9, "emit": 9, "setup": 9.2, "setup/start": 9.1, "setup/outputs": 9.22, "setup/words": 9.25, "kernel/plan": 9.4, "kernel": 9.5, "kernel/tiers": 9.6, "jit/x86": 9.9, "jit": 10,
     "integrate/series": 9.8, "integrate": 10, "integrate/lanes": 10.1, "integrate/states": 10.1, "result": 11, "result/hdf5": 11.1, "result/parquet": 11.1, "motion": 11.5, "dynamics": 11.7, "observe/rows": 11.9, "observe/floors": 11.9, "observe": 12, "linear": 12, "simulation": 12.2, "contact/law": 12.22, "contact/surface": 12.23, "contact/mode": 12.24, "contact": 12.25,
     "ensemble/lanes": 12.28, "ensemble": 12.3, "ensemble/cases": 12.35, "ensemble/reduce": 12.28, "ensemble/store": 12.3, "ensemble/parts": 12.4, "ensemble/refine": 12.4, "published": 12.5, "published/misprints": 12.55, "published/findings": 12.6, "plot": 13, "report/rows": 13.4, "report": 13.5, "report/page": 13.6, "api": 13.8, "api/pictures": 13.85, "studio": 13.9, "cli": 14, "cli/models": 14.1, "cli/equations": 14.2, "cli/motions": 14.2, "cli/pictures": 14.3, "python": 14,
 }  # fmt: skip

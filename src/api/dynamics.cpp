@@ -7,8 +7,8 @@
 
 #include "api/dynamics_data.h"
 #include "contact/mode/switched_model.h"
-#include "setup/chosen_outputs.h"
 #include "setup/inputs.h"
+#include "setup/outputs/chosen_outputs.h"
 
 namespace anholon::v1 {
 

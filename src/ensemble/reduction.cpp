@@ -363,7 +363,17 @@ struct Piece {
   double from, to;
   int depth;         // the number of halvings
   double error = 0;  // of the interpolation over twice the piece; 0 if there is none
+
+  static constexpr int kDeepest = 48;
+  double middle() const { return from + (to - from) / 2; }
+  bool divisible() const { return depth < kDeepest && middle() != from && middle() != to; }
 };
+
+// Replaces a piece by its halves; `error`: of the interpolation over the piece.
+void add_halves(const Piece& p, double error, std::vector<Piece>& left) {
+  left.push_back({p.middle(), p.to, p.depth + 1, error});
+  left.push_back({p.from, p.middle(), p.depth + 1, error});
+}
 
 // Returns the pieces between these points, the first one last.
 std::vector<Piece> pieces_between(const std::vector<double>& points, double h) {
@@ -381,7 +391,7 @@ std::vector<Piece> pieces_between(const std::vector<double>& points, double h) {
 // The formula is unbounded if these values go far beyond all others, and its integral diverges if they weigh in spite
 // of the length of the pieces.
 void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
-  constexpr int kFirst = 2, kDeepest = 48, kTiny = 30, kShort = 20, kLongWithout = 8, kMostPieces = 1000;
+  constexpr int kFirst = 2, kTiny = 30, kShort = 20, kLongWithout = 8, kMostPieces = 1000;
   Seen& s = seen_[formula];
   const std::function<FormulaValue(double)> f = [&](double x) { return step.value(formula, x); };
   std::vector<Piece> left = pieces_between(hidden_, step.h);
@@ -407,10 +417,9 @@ void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
   for (int pieces = 0; !left.empty() && !s.lost;) {
     const Piece p = left.back();
     left.pop_back();
-    const double middle = p.from + (p.to - p.from) / 2;
-    const bool divisible = p.depth < kDeepest && middle != p.from && middle != p.to && pieces < kMostPieces;
+    const bool divisible = p.divisible() && pieces < kMostPieces;
     if (p.depth < kFirst && divisible) {
-      left.push_back({middle, p.to, p.depth + 1}), left.push_back({p.from, middle, p.depth + 1});
+      add_halves(p, 0, left);
       continue;
     }
     ++pieces;
@@ -436,8 +445,7 @@ void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
     const auto [lowest, highest] = std::minmax_element(there.values().begin(), there.values().end());
     const bool good = (there.good(tolerance_ * size) || there.is_noisy(p.error)) && ends_as(there, p);
     if (!good && divisible && (there.without_value() > 0 || matters(*lowest, *highest, p.to - p.from))) {
-      left.push_back({middle, p.to, p.depth + 1, there.error()});
-      left.push_back({p.from, middle, p.depth + 1, there.error()});
+      add_halves(p, there.error(), left);
       continue;
     }
     if (s.lost) break;

@@ -17,8 +17,8 @@
 #include "motion/saved.h"
 #include "motion/set_by_event.h"
 #include "numeric/told_time.h"
-#include "setup/choice_watch.h"
 #include "setup/nearest_state.h"
+#include "setup/outputs/choice_watch.h"
 #include "setup/scenario.h"
 
 namespace anholon {

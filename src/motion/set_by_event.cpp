@@ -1,7 +1,7 @@
 #include "motion/set_by_event.h"
 
 #include "print/print.h"
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 
 namespace anholon {
 

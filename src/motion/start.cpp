@@ -4,7 +4,7 @@
 
 #include "integrate/stepper.h"
 #include "numeric/told_time.h"
-#include "setup/redundant.h"
+#include "setup/outputs/redundant.h"
 
 namespace anholon {
 

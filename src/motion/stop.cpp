@@ -3,7 +3,7 @@
 #include "motion/motion.h"
 #include "numeric/told_time.h"
 #include "setup/eliminate.h"
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 #include "structure/branch.h"
 #include "structure/redundancy.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "expr/normal.h"
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 
 namespace anholon {
 

@@ -7,7 +7,7 @@
 // inertia.
 #pragma once
 #include "integrate/stretch.h"
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 
 namespace anholon {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "numeric/relative.h"
-#include "setup/redundant.h"
+#include "setup/outputs/redundant.h"
 
 namespace anholon {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "print/print.h"
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 #include "tape/bind.h"
 #include "tape/operands.h"
 

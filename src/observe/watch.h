@@ -12,7 +12,7 @@
 #include "numeric/relative.h"
 #include "observe/evaluate.h"
 #include "observe/report.h"
-#include "setup/redundant.h"
+#include "setup/outputs/redundant.h"
 
 namespace anholon {
 

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <chrono>
 
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 #include "simulation/event_paces.h"
 #include "simulation/first_pull.h"
 #include "simulation/followed_value.h"
@@ -462,7 +462,7 @@ class Run {
   struct {
     W t{0};
     std::size_t count = 0;
-  } last_events_;  // the events at the end of a step that were found last
+  } last_events_;          // the events at the end of a step that were found last
   SimulationPlans plans_;  // the plans of the motion are in the motion
   RunRows<N> rows_;        // after the members that it uses
   RunEnd<N> end_;          // the last member, because it uses the others

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "observe/evaluate.h"
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 #include "support/models.h"
 
 namespace anholon::test::bicycle_test {

@@ -5,7 +5,7 @@
 #include "ensemble/case_scenario.h"
 #include "motion/representation.h"
 #include "observe/watch.h"
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 #include "simulation/lost_value.h"
 
 namespace anholon {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/thread_time.h"
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 
 namespace anholon {
 

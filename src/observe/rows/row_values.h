@@ -3,7 +3,7 @@
 #include <map>
 
 #include "result/columns.h"
-#include "setup/redundant.h"
+#include "setup/outputs/redundant.h"
 
 namespace anholon {
 

@@ -6,7 +6,7 @@
 
 #include "observe/rows/row_kernel.h"
 #include "observe/rows/row_values.h"
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 #include "support/models.h"
 #include "support/motion.h"
 

@@ -1,4 +1,4 @@
-#include "setup/chosen_outputs.h"
+#include "setup/outputs/chosen_outputs.h"
 
 #include <algorithm>
 

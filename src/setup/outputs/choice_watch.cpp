@@ -1,4 +1,4 @@
-#include "setup/choice_watch.h"
+#include "setup/outputs/choice_watch.h"
 
 #include "structure/redundancy.h"
 

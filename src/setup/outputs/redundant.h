@@ -2,7 +2,7 @@
 // multipliers. The choice of the constraints that are left out belongs to a point: a motion may choose others later
 // (motion/motion.h).
 #pragma once
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 
 namespace anholon {
 

@@ -1,4 +1,4 @@
-#include "setup/redundant.h"
+#include "setup/outputs/redundant.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 
 #include "structure/redundancy.h"
 

@@ -1,7 +1,7 @@
 // Watches whether the choices in the equations of a leg become bad: the pivots by which its elimination divides, and
 // the independence of the constraints that take part if others are left out.
 #pragma once
-#include "setup/output_tape.h"
+#include "setup/outputs/output_tape.h"
 
 namespace anholon {
 
