@@ -166,18 +166,16 @@ bool StepEnd<N>::shows_events(PresentStep<N>& step, const EventWatch<N>& events,
 }
 
 // Returns the time by which a step of length h ends past a kink. It is relative to the length up to the kink, or, if the
-// motion meets the kink again or an event may be near, to that of the whole step.
+// motion meets the kink again, to that of the whole step.
 template <Number N>
-Wider<N> StepEnd<N>::past_kink(const EventWatch<N>& events, const Kink<N>& kink, const W& t, const W& where,
-                               const W& h) const {
+Wider<N> StepEnd<N>::past_kink(const Kink<N>& kink, const W& t, const W& where, const W& h) const {
   const auto past = [&](const W& length) {
     return W(convert<W>(unit_roundoff<N>()) * W(kPastKink) * std::max(W(abs(t)), W(abs(length))) +
              W(std::exp(log_tolerance_)) * abs(length));
   };
-  const W most = past(h);
-  if (!kink.ahead || kink.at_start || in_a_row_.met_again > 0 || !(abs(where) > most * W(4))) return most;
-  if (!events.empty() && events.may_pass_near(convert<N>(t), convert<N>(where), convert<N>(most))) return most;
-  return past(where);
+  const W near = past(where);
+  const bool again = in_a_row_.met_again > 0 || !(abs(where) > std::max(near, in_a_row_.past) * W(4));
+  return !kink.ahead || kink.at_start || again ? past(h) : near;
 }
 
 template <Number N>
@@ -204,7 +202,7 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
       kink = first_kink<N>(step.series().machine(), slots_, order_ - 1, convert<N>(h), !kernel,
                            others_.give_up ? others_.slots : others_.passed_over);
     where = kink.at_start ? W(0) : kink.ahead ? convert<W>(kink.where) : h;
-    past = past_kink(events, kink, t, where, h);
+    past = past_kink(kink, t, where, h);
     // Beyond a kink other functions hold.
     looked_ = kink.ahead ? W(where - (forward ? past : W(-past))) : where;
     if (!(abs(where) > past)) looked_ = W(0);
@@ -221,6 +219,7 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
     return shorten(step, events, h, whole);
   }
   in_a_row_.met_again = at_kink_ && !(abs(where) > past * W(4)) ? in_a_row_.met_again + 1 : 0;
+  in_a_row_.past = at_kink_ ? past : W(0);
   if (Outcome o = note_kink(kink.at_start, where, past); !o.ok() || !at_kink_) return o;
   const W to = beyond(step, events, kink, where, length_past(step, where, past, forward), forward);
   if (abs(to) < abs(h)) h = to, ++kinks_;

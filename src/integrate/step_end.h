@@ -98,6 +98,7 @@ class StepEnd {
   struct InARow {
     int short_kinks = 0;  // steps that were cut by a kink shortly after their start
     int met_again = 0;    // steps that were cut by a kink at their start or shortly after it
+    W past{0};            // how far the last step was to go past its kink; 0 without a kink
   };
   struct Hidden {
     std::uint32_t slot;
@@ -111,7 +112,7 @@ class StepEnd {
   bool put_back(const Machine<N>& machine) const;
   Outcome stays_at_constraint(std::size_t equation) const;
   Outcome note_kink(bool at_start, const W& where, const W& past);
-  W past_kink(const EventWatch<N>& events, const Kink<N>& kink, const W& t, const W& where, const W& h) const;
+  W past_kink(const Kink<N>& kink, const W& t, const W& where, const W& h) const;
   bool are_too_many(const Kink<N>& kink, const W& where, const W& past, const W& whole);
   bool may_end_at(PresentStep<N>& step, const EventWatch<N>& events, const W& h);
   bool as_foretold(PresentStep<N>& step, const EventWatch<N>& events, const N& where) const;
