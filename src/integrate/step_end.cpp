@@ -169,12 +169,12 @@ bool StepEnd<N>::shows_events(PresentStep<N>& step, const EventWatch<N>& events,
 // motion meets the kink again, to that of the whole step.
 template <Number N>
 Wider<N> StepEnd<N>::past_kink(const Kink<N>& kink, const W& t, const W& where, const W& h) const {
+  const auto roundoff = [](const W& size) { return W(convert<W>(unit_roundoff<N>()) * W(kPastKink) * abs(size)); };
   const auto past = [&](const W& length) {
-    return W(convert<W>(unit_roundoff<N>()) * W(kPastKink) * std::max(W(abs(t)), W(abs(length))) +
-             W(std::exp(log_tolerance_)) * abs(length));
+    return W(std::max(roundoff(t), roundoff(length)) + W(std::exp(log_tolerance_)) * abs(length));
   };
   const W near = past(where);
-  const bool again = in_a_row_.met_again > 0 || !(abs(where) > std::max(near, in_a_row_.past) * W(4));
+  const bool again = in_a_row_.met_again > 0 || !(abs(where) > std::max({near, roundoff(h), in_a_row_.past}) * W(4));
   return !kink.ahead || kink.at_start || again ? past(h) : near;
 }
 
@@ -219,9 +219,10 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
     return shorten(step, events, h, whole);
   }
   in_a_row_.met_again = at_kink_ && !(abs(where) > past * W(4)) ? in_a_row_.met_again + 1 : 0;
-  in_a_row_.past = at_kink_ ? past : W(0);
+  in_a_row_.past = W(0);
   if (Outcome o = note_kink(kink.at_start, where, past); !o.ok() || !at_kink_) return o;
   const W to = beyond(step, events, kink, where, length_past(step, where, past, forward), forward);
+  in_a_row_.past = abs(W(to - where));
   if (abs(to) < abs(h)) h = to, ++kinks_;
   return {};
 }

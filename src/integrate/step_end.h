@@ -98,7 +98,7 @@ class StepEnd {
   struct InARow {
     int short_kinks = 0;  // steps that were cut by a kink shortly after their start
     int met_again = 0;    // steps that were cut by a kink at their start or shortly after it
-    W past{0};            // how far the last step was to go past its kink; 0 without a kink
+    W past{0};            // how far the last step went past its kink; 0 without a kink
   };
   struct Hidden {
     std::uint32_t slot;
