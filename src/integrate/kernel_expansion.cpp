@@ -81,7 +81,7 @@ bool KernelExpansion::hides_nothing_over(double h) const {
   const Plan& plan = kernel_->plan().plan();
   if (plan.hiding.empty()) return true;
   kernel_->show_last();
-  return std::all_of(plan.hiding.begin(), plan.hiding.end(), [&](const Plan::HidingSlot& slot) {
+  return std::all_of(plan.hiding.begin(), plan.hiding.end(), [&](const Plan::HidingSeries& slot) {
     return hides_nothing(slot.function, kernel_->whole_series(slot.argument, lane_),
                          static_cast<std::size_t>(kernel_->lanes()), order_ - 1, h);
   });
@@ -192,7 +192,7 @@ std::vector<double> KernelExpansion::hidden_points(double h) const {
   if (plan.hiding.empty()) return points;
   kernel_->show_last();
   std::vector<double> argument, value;
-  for (const Plan::HidingSlot& slot : plan.hiding) {
+  for (const Plan::HidingSeries& slot : plan.hiding) {
     if (hides_nothing(slot.function, kernel_->whole_series(slot.argument, lane_),
                       static_cast<std::size_t>(kernel_->lanes()), order_ - 1, h))
       continue;

@@ -50,7 +50,7 @@ void StepEnd<N>::set_slots(std::uint32_t end, std::vector<bool> others) {
   hiding_.clear();
   const Tape& tape = program_->tape;
   for (std::uint32_t s = 0; s < end; ++s)
-    if (const auto function = may_hide(tape, tape.code[s])) hiding_.push_back({s, *function});
+    if (const auto hides = may_hide(tape, s)) hiding_.push_back({s, *hides});
 }
 
 template <Number N>
@@ -114,9 +114,9 @@ void StepEnd<N>::find_hidden(PresentStep<N>& step, const W& h) {
     for (const double x : kernel->hidden_points(to_double(length))) hidden_.push_back(N(x));
   } else {
     const Machine<N>& machine = step.series().machine();
-    for (const auto& [slot, function] : hiding_)
-      add_hidden_points(function, machine.series(hidden_argument(program_->tape.code[slot])), machine.series(slot),
-                        order_ - 1, length, hidden_);
+    for (const auto& [slot, hides] : hiding_)
+      add_hidden_points(hides.function, machine.series(hides.argument), machine.series(slot), order_ - 1, length,
+                        hidden_);
   }
   std::sort(hidden_.begin(), hidden_.end(), [](const N& a, const N& b) { return abs(a) < abs(b); });
 }

@@ -102,7 +102,7 @@ class StepEnd {
   };
   struct Hidden {
     std::uint32_t slot;
-    Hiding function;
+    HidingSlot hides;
   };
   W length_past(PresentStep<N>& step, const W& where, const W& past, bool forward);
   // Returns where a step ends that meets the kink; `past`: the distance that surely leads past a kink.

@@ -332,7 +332,7 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
   for (std::size_t j = 0; j < p.x.size(); ++j) low_orders_.push_back({p.x[j], static_cast<std::uint32_t>(p.d[j]) + 1});
   for (const Place& q : p.quadratures)
     low_orders_.push_back({q.at, q.series ? static_cast<std::uint32_t>(p.largest_lead) + 1 : 1});
-  for (const Plan::HidingSlot& slot : p.hiding)
+  for (const Plan::HidingSeries& slot : p.hiding)
     for (const Place& place : {slot.argument, slot.value})
       low_orders_.push_back({place.at, static_cast<std::uint32_t>(p.largest_lead) + 1});
   // Unites parts that overlap, so that each series has all that is saved of it in one part.

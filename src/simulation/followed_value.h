@@ -24,22 +24,14 @@ std::pair<double, double> value_of_quadrature(const Stepper<N>& stepper, const W
           to_double(sizes[program.tape.roots[program.unknowns() + quadrature]])};
 }
 
-// A function that may hide its variation, by the slot of its argument.
-struct HidingSlot {
-  Hiding function;
-  std::uint32_t argument;
-};
-
-// The hiding functions in each quadrature of a program. Quotients and powers are left out: their series show where they
-// vary.
+// The functions and quotients in each quadrature of a program that may hide their variation.
 class HidingSlots {
  public:
   const std::vector<HidingSlot>& of(const Program& program, std::size_t quadrature) {
     const auto [at, is_new] = known_.try_emplace(quadrature);
     if (!is_new) return at->second;
     for (const std::uint32_t slot : precedents(program.tape, {program.tape.roots[program.unknowns() + quadrature]}))
-      if (const auto function = may_hide(program.tape, program.tape.code[slot]); function && function->function)
-        at->second.push_back({*function, hidden_argument(program.tape.code[slot])});
+      if (const auto hides = may_hide(program.tape, slot)) at->second.push_back(*hides);
     return at->second;
   }
   // Forgets the slots of the program before so many eliminations.

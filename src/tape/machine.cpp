@@ -383,6 +383,7 @@ N Machine<N>::magnitude(std::uint32_t slot) const {
 template <Scalar N>
 void Machine<N>::made_of(std::vector<N>& sizes) const {
   sizes.assign(tape_->code.size(), N(0));
+  const auto value = [&](std::uint32_t slot) { return N(abs(series(slot)[0])); };
   for (std::uint32_t s = 0; s < sizes.size(); ++s) {
     const Instruction& in = tape_->code[s];
     switch (in.op) {
@@ -392,16 +393,14 @@ void Machine<N>::made_of(std::vector<N>& sizes) const {
       break;
     case Op::multiply:
     case Op::scale:
-      sizes[s] = sizes[in.a] * sizes[in.b];
+      sizes[s] = sizes[in.a] * value(in.b) + value(in.a) * (sizes[in.b] - value(in.b));
       break;
     case Op::square:
-      sizes[s] = sizes[in.a] * sizes[in.a];
+      sizes[s] = (sizes[in.a] + sizes[in.a] - value(in.a)) * value(in.a);
       break;
-    case Op::divide: {
-      const N& b = series(in.b)[0];
-      sizes[s] = sizes[in.a] * sizes[in.b] / (b * b);
+    case Op::divide:
+      sizes[s] = (sizes[in.a] + value(in.a) * (sizes[in.b] / value(in.b) - N(1))) / value(in.b);
       break;
-    }
     case Op::constant:
     case Op::pi:
     case Op::input:

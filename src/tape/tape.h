@@ -129,8 +129,9 @@ class Machine {
   Partials partials(std::uint32_t slot) const;
   // Returns the sum of the absolute values of a slot's terms, at order 0.
   N magnitude(std::uint32_t slot) const;
-  // Computes for every slot at order 0 the sum of the absolute values of its terms with products multiplied out. The
-  // round-off of this sum bounds a slot that should vanish.
+  // Computes for every slot at order 0 the size of the numbers that it is made of: of a sum, the sum of the absolute
+  // values of its terms, which a product and a quotient take on in proportion. The round-off of this size bounds a slot
+  // that should vanish.
   void made_of(std::vector<N>& sizes) const;
   // Returns the sum of the absolute values of the terms of a main root, in its Taylor coefficient of this order.
   N terms(std::size_t root, std::size_t order) const;

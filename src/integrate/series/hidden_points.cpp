@@ -75,7 +75,8 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
   const N length = abs(h);
   N moves(0);
   for (int k = degree; k >= 1; --k) moves = (moves + abs(argument[k])) * length;
-  const bool quotient = function.quotient();
+  const bool quotient = function.quotient;
+  const N near_zero(quotient ? function.near_zero() : 0);
   const auto u = [&](const N& x) { return value_at(argument, degree, x); };
   // The slope along the step.
   const auto slope_of = [&](const N& x) {
@@ -85,7 +86,7 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
   };
   const auto ask = [&](const N& x) {
     if (quotient) {
-      if (abs(u(x)) < abs(argument[0]) * N(Hiding::kNearZero)) points.push_back(x);
+      if (abs(u(x)) < abs(argument[0]) * near_zero) points.push_back(x);
       return;
     }
     const N is = value_of(function, u(x)), foretold = value_at(value, degree, x);

@@ -15,7 +15,7 @@ struct HidingArgument {
 };
 
 // Adds the points, in (0, h). `argument` and `value`: the Taylor coefficients of orders 0..degree of the argument and
-// of the function. For a quotient, a power of -1, the points are where the divisor is nearly zero.
+// of the function. For a quotient the points are where the argument is nearly zero.
 template <Number N>
 void add_hidden_points(const Hiding& function, const N* argument, const N* value, int degree, const N& h,
                        std::vector<N>& points);

@@ -9,6 +9,7 @@
 //   - J is never formed: the linearized tape itself, one row for every slot that depends on the unknowns, is eliminated by a sparse
 //     LU (program/sparse_lu.h). For a chain that is the O(n) recursion of articulated bodies, found by the order of elimination.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -102,19 +103,24 @@ struct Beyond {
 // A function of one argument that may be nearly constant far from its variation. (A sine is not one: its series show
 // its variation.)
 struct Hiding {
-  std::optional<Function> function;  // nullopt: a power
-  double exponent = 0;
+  std::optional<Function> function;  // nullopt: a power, or a quotient
+  double exponent = 0;               // of the power; of a quotient: the power of the argument by which it divides
+  bool quotient = false;
 
-  bool quotient() const { return !function && exponent == -1; }
-  // A function hides nothing if its argument changes by less than this; for powers, relative to the argument.
-  double hides_beyond() const { return quotient() ? 1 - kNearZero : 0.5; }
-  // A divisor this small, relative to its value at the start, makes a wall or a pole.
-  static constexpr double kNearZero = 1e-3;
+  // A function hides nothing if its argument changes by less than this; for powers and quotients, relative to the
+  // argument.
+  double hides_beyond() const { return quotient ? 1 - near_zero() : 0.5; }
+  // An argument this small, relative to its value at the start, makes a wall, a peak or a pole of a quotient.
+  double near_zero() const { return std::pow(1e-3, 1 / exponent); }
 };
-// Returns the function or power that an instruction computes if it may hide its variation; hidden_argument() returns
-// its argument. A quotient is a power of -1 of the divisor.
-std::optional<Hiding> may_hide(const Tape& tape, const Instruction& in);
-inline std::uint32_t hidden_argument(const Instruction& in) { return in.op == Op::divide ? in.b : in.a; }
+// A slot that may hide its variation, and the slot of its argument.
+struct HidingSlot {
+  Hiding function;
+  std::uint32_t argument;
+};
+// Returns the function, power or quotient of a slot if it may hide its variation. The argument of a quotient is the
+// base of the power by which it divides.
+std::optional<HidingSlot> may_hide(const Tape& tape, std::uint32_t slot);
 
 struct Plan {
   int stages = 0;
@@ -144,11 +150,11 @@ struct Plan {
     Place place;
   };
   std::vector<Deciding> deciding;
-  struct HidingSlot {
+  struct HidingSeries {
     Hiding function;
     Place argument, value;
   };
-  std::vector<HidingSlot> hiding;
+  std::vector<HidingSeries> hiding;
   std::uint32_t rows = 0;  // of the linearized tape
   int largest_lead = 0, largest_d = 0;
   std::vector<int> c, d;

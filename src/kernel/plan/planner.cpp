@@ -30,11 +30,9 @@ void note_watched(const Slots& slots, const PlanLayout& layout, Plan& plan) {
     if (in.op == Op::lookup) add(K::knots, in.a);
     if (in.op == Op::arctan2) add(K::sign, in.a), add(K::sign, in.b);
   }
-  // Quotients and powers of what only watches the motion show by their series where they vary.
   for (std::uint32_t s = 0; s < tape.code.size(); ++s)
-    if (const auto function = slots.varies(s) ? may_hide(tape, tape.code[s]) : std::nullopt;
-        function && (s < tape.main_end || function->function))
-      plan.hiding.push_back({*function, layout.place(hidden_argument(tape.code[s])), layout.place(s)});
+    if (const auto hides = slots.varies(s) ? may_hide(tape, s) : std::nullopt)
+      plan.hiding.push_back({hides->function, layout.place(hides->argument), layout.place(s)});
 }
 
 }  // namespace

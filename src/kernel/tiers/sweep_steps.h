@@ -102,7 +102,7 @@ class SweepSteps : public Arithmetic {
   void look_for_hidden() override {
     const V length = abs(w_[k_.step]), square = length * length, fourth = square * square, zero = T::broadcast(0);
     V worst = zero;
-    for (const Plan::HidingSlot& slot : p_.hiding) {
+    for (const Plan::HidingSeries& slot : p_.hiding) {
       const V* a = w_ + slot.argument.at;
       V s[kBlock] = {zero, zero, zero, zero};
       for (int k = p_.stages / kBlock * kBlock; k >= 0; k -= kBlock)
