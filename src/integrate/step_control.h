@@ -32,6 +32,11 @@ struct StepSettings {
       {};  // of what is watched for changes of sign: zero at the start, but for round-off
 };
 
+// The number of the first quadratures whose values steps have to heed.
+inline std::size_t known_quadratures(const StepSettings& s) {
+  return std::max({s.integrals, s.known_to, s.followed_to});
+}
+
 // ceil(-ln(tolerance)/2 + 1), and at least 4: the order of least work for the tolerance if work grows with the square
 // of the order (Jorba & Zou 2005).
 int least_work_order(double log_tolerance);

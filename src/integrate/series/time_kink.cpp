@@ -6,42 +6,39 @@ namespace {
 
 constexpr int kDeepestLine = 32;  // conditions on the time are short
 
-// The line a + b t.
 template <Number N>
-struct Line {
-  N a{0}, b{0};
-};
-
-template <Number N>
-class LineReader {
+class Reader {
  public:
-  LineReader(const Program& program, const std::vector<N>& parameters) : program_(program), parameters_(parameters) {}
+  using Formula = std::optional<TimePolynomial<N>>;
+  Reader(const Program& program, const std::vector<N>& parameters) : program_(program), parameters_(parameters) {}
 
-  std::optional<Line<N>> read(std::uint32_t slot, int depth = 0) const {
-    if (depth == kDeepestLine) return std::nullopt;
+  // Reads a slot whose operands `operand` reads.
+  template <class Operand>
+  Formula read(std::uint32_t slot, const Operand& operand) const {
     const Instruction& in = program_.tape.code[slot];
-    const auto operand = [&](std::uint32_t s) { return read(s, depth + 1); };
     switch (in.op) {
     case Op::constant:
-      return Line<N>{number(in.index), N(0)};
+      return TimePolynomial<N>{number(in.index), N(0), N(0)};
     case Op::pi:
-      return Line<N>{pi<N>(), N(0)};
+      return TimePolynomial<N>{pi<N>(), N(0), N(0)};
     case Op::parameter:
-      return Line<N>{parameters_[in.index], N(0)};
+      return TimePolynomial<N>{parameters_[in.index], N(0), N(0)};
     case Op::input:
       if (program_.inputs[in.index].kind != ProgramInput::Kind::time) return std::nullopt;
-      return Line<N>{N(0), N(1)};
+      return TimePolynomial<N>{N(0), N(1), N(0)};
     case Op::linear:
-      return sum(in, depth);
+      return sum(in, operand);
     case Op::multiply:
     case Op::scale:
       return product(operand(in.a), operand(in.b));
-    case Op::square:
-      return product(operand(in.a), operand(in.a));
+    case Op::square: {
+      const Formula x = operand(in.a);
+      return product(x, x);
+    }
     case Op::divide: {
-      const auto below = operand(in.b);
-      if (!below || below->b != N(0)) return std::nullopt;
-      return product(operand(in.a), Line<N>{N(1) / below->a, N(0)});
+      const Formula below = operand(in.b);
+      if (!below || !below->constant()) return std::nullopt;
+      return product(operand(in.a), TimePolynomial<N>{N(1) / below->a, N(0), N(0)});
     }
     case Op::power:
     case Op::function:
@@ -54,24 +51,31 @@ class LineReader {
     return std::nullopt;
   }
 
+  // Reads a slot with all that it is made of.
+  Formula read_whole(std::uint32_t slot, int depth = 0) const {
+    if (depth == kDeepestLine) return std::nullopt;
+    return read(slot, [&](std::uint32_t s) { return read_whole(s, depth + 1); });
+  }
+
  private:
   N number(std::uint32_t index) const { return from_rational<N>(program_.tape.rationals[index]); }
 
-  std::optional<Line<N>> sum(const Instruction& in, int depth) const {
-    Line<N> line;
+  template <class Operand>
+  Formula sum(const Instruction& in, const Operand& operand) const {
+    TimePolynomial<N> all;
     for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
       const LinearTerm& term = program_.tape.linear_terms[k];
-      const auto x = read(term.slot, depth + 1);
+      const Formula x = operand(term.slot);
       if (!x) return std::nullopt;
       const N weight = number(term.coefficient);
-      line.a += weight * x->a, line.b += weight * x->b;
+      all.a += weight * x->a, all.b += weight * x->b, all.c += weight * x->c;
     }
-    return line;
+    return all;
   }
 
-  static std::optional<Line<N>> product(const std::optional<Line<N>>& x, const std::optional<Line<N>>& y) {
-    if (!x || !y || (x->b != N(0) && y->b != N(0))) return std::nullopt;
-    return Line<N>{x->a * y->a, x->a * y->b + x->b * y->a};
+  static Formula product(const Formula& x, const Formula& y) {
+    if (!x || !y || x->degree() + y->degree() > 2) return std::nullopt;
+    return TimePolynomial<N>{x->a * y->a, x->a * y->b + x->b * y->a, x->a * y->c + x->b * y->b + x->c * y->a};
   }
 
   const Program& program_;
@@ -83,10 +87,20 @@ class LineReader {
 template <Number N>
 std::optional<N> passes_at(const Program& program, const std::vector<N>& parameters, std::uint32_t slot,
                            const N& value) {
-  const auto line = LineReader<N>(program, parameters).read(slot);
-  if (!line || line->b == N(0)) return std::nullopt;
+  const auto line = Reader<N>(program, parameters).read_whole(slot);
+  if (!line || line->degree() != 1) return std::nullopt;
   const N t = (value - line->a) / line->b;
   return is_finite(t) ? std::optional<N>(t) : std::nullopt;
+}
+
+template <Number N>
+std::vector<std::optional<TimePolynomial<N>>> time_polynomials(const Program& program, const std::vector<N>& parameters,
+                                                               const std::vector<bool>& of_time) {
+  std::vector<std::optional<TimePolynomial<N>>> known(of_time.size());
+  const Reader<N> reader(program, parameters);
+  for (std::uint32_t slot = 0; slot < known.size(); ++slot)
+    if (of_time[slot]) known[slot] = reader.read(slot, [&](std::uint32_t s) { return known[s]; });
+  return known;
 }
 
 bool has_exact_sign(const Program& program, std::uint32_t slot) {
@@ -111,5 +125,7 @@ template std::optional<long double> passes_at(const Program&, const std::vector<
                                               const long double&);
 template std::optional<Quad> passes_at(const Program&, const std::vector<Quad>&, std::uint32_t, const Quad&);
 template std::optional<Multi> passes_at(const Program&, const std::vector<Multi>&, std::uint32_t, const Multi&);
+template std::vector<std::optional<TimePolynomial<long double>>>
+time_polynomials(const Program&, const std::vector<long double>&, const std::vector<bool>&);
 
 }  // namespace anholon

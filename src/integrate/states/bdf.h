@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "integrate/states/sundials.h"
+#include "integrate/states/time_stops.h"
 #include "integrate/step_budget.h"
 
 namespace anholon {
@@ -23,11 +24,15 @@ class Bdf final : public StateStepper {
 
  private:
   void put(MotionPoint& point) const;
+  void aim_beyond(double t);
 
   std::optional<StateRate> rate_;
   std::optional<Sundials> motion_;
   StepSettings settings_;
   StepPaces paces_;
+  TimeStops stops_;
+  std::optional<TimeStops::Stop> stop_;  // the next one
+  double end_ = 0;
 };
 
 }  // namespace anholon

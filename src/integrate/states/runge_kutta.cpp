@@ -89,6 +89,7 @@ RungeKutta::RungeKutta(StateRate rate, const StepSettings& settings)
 Outcome RungeKutta::start(const MotionPoint& from, long double end) {
   now_ = before_ = from;
   paces_.begin(from.t, steps_);
+  stops_ = {rate_.program(), rate_.parameters(), known_quadratures(settings_), from.t, end};
   carry_.state.assign(from.state.size(), 0);
   carry_.integrals.assign(from.integrals.size(), 0);
   rate_.set_leading(from.leading);
@@ -244,9 +245,32 @@ Outcome RungeKutta::may_go_on(long double left) {
                                                                                        : Outcome{};
 }
 
+// Goes on from before a kink that the time alone decides to a time a few round-offs ahead, behind it. Without a value
+// there the motion stays before it, and the next step fails by itself.
+void RungeKutta::pass(const TimeStops::Stop& kink) {
+  const MotionPoint now = now_;
+  const RoundOffs carry = carry_;
+  const std::vector<double> here = here_;
+  const Kinks kinks = kinks_;
+  const double h = kink.behind - kink.before;
+  for (std::size_t i = 0; i < now_.state.size(); ++i) add(now_.state[i], carry_.state[i], h * here_[i]);
+  for (std::size_t i = 0; i < now_.integrals.size(); ++i)
+    add(now_.integrals[i], carry_.integrals[i], h * here_[rate_.size() + i]);
+  now_.t = kink.behind;
+  if (first_rate().ok()) {
+    passed_ = kink;
+    return;
+  }
+  now_ = now, carry_ = carry, here_ = here, kinks_ = kinks;
+  rate_.set_leading(now_.leading);
+}
+
 Outcome RungeKutta::step(long double end) {
+  if (Outcome o = may_go_on(end - now_.t); !o.ok()) return o;
+  const auto stop = stops_.next(now_.t, end);
+  const bool ahead = stop && (end > now_.t ? stop->before > now_.t : stop->before < now_.t);
+  if (stop) end = ahead ? stop->before : stop->behind;
   const long double left = end - now_.t;
-  if (Outcome o = may_go_on(left); !o.ok()) return o;
   const double floor = 0x1p-53 * kCollapsedRoundoffs * static_cast<double>(std::abs(now_.t));
   k_[0] = here_;
   narrow(now_.state, start_);
@@ -308,6 +332,8 @@ Outcome RungeKutta::step(long double end) {
       h_ = kLeast * std::abs(h);
       continue;
     }
+    passed_.reset();
+    if (ahead && now_.t == stop->before && stop->behind != stop->before) pass(*stop);
     ++steps_;
     const double grown = e > 0 ? kSafety * std::pow(e, -kProportional) * std::pow(error_before_, kIntegral) : kMost;
     // A step that the end or a kink has cut short does not limit the next step. After a refusal a step does not grow.
@@ -321,6 +347,13 @@ Outcome RungeKutta::step(long double end) {
 Outcome RungeKutta::at(long double t, MotionPoint& point) {
   if (t == now_.t || t == before_.t) {
     point = t == now_.t ? now_ : before_;
+    return {};
+  }
+  if (passed_ && passed_->within(t)) {
+    point = now_;
+    point.t = t;
+    const long double back = t - now_.t;
+    for (std::size_t i = 0; i < point.state.size(); ++i) point.state[i] += back * here_[i];
     return {};
   }
   const double h = static_cast<double>(t - before_.t);

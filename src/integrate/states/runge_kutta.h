@@ -7,6 +7,7 @@
 #pragma once
 #include "integrate/states/dormand_prince.h"
 #include "integrate/states/state_rate.h"
+#include "integrate/states/time_stops.h"
 #include "integrate/step_budget.h"
 
 namespace anholon {
@@ -27,6 +28,7 @@ class RungeKutta final : public StateStepper {
   using Stages = std::array<std::vector<double>, dormand_prince::kStages>;
 
   Outcome may_go_on(long double left);
+  void pass(const TimeStops::Stop& kink);
   Outcome first_rate();
   double first_step(double direction);
   Outcome stages(const MotionPoint& from, double h);
@@ -49,6 +51,8 @@ class RungeKutta final : public StateStepper {
   std::vector<std::pair<double, double>> most_;
   RoundOffs carry_;
   StepPaces paces_;
+  TimeStops stops_;
+  std::optional<TimeStops::Stop> passed_;  // the kink of the time that ended the last step
   double h_ = 0, error_before_ = 1;
   std::size_t refused_ = 0;
   struct Kinks {  // the sides at now()

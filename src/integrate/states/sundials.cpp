@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <utility>
 
 #include <cvode/cvode.h>
 #include <ida/ida.h>
@@ -162,6 +163,11 @@ struct Sundials::Work {
   bool start_stiff();
   Outcome step();
   Outcome interpolate(double t);
+  Outcome pass(double behind);
+  void start_anew(double t, const std::vector<double>& from, const std::vector<double>& leading_now,
+                  const std::vector<double>& integrals_now);
+  std::size_t refused() const;
+  std::size_t setups() const;
   Outcome failed(int flag) const;
 
   const Program& program;
@@ -181,6 +187,8 @@ struct Sundials::Work {
   Outcome trouble;                         // the last failure inside f or F
   std::string last_error;                  // in the words of SUNDIALS
   std::size_t steps = 0, evaluations = 0;
+  std::size_t refused_before = 0, setups_before = 0;  // before the method started anew
+  bool jumped = false;                                // f, at the last kink
   double drift = 0;
   std::vector<double> now, found, equations, branch, sizes;
   std::vector<double> state, leading, integrals;
@@ -332,6 +340,54 @@ Outcome Sundials::Work::interpolate(double t) {
   return {};
 }
 
+Outcome Sundials::Work::pass(double behind) {
+  if (Outcome o = interpolate(reached); !o.ok()) return o;
+  if (Outcome o = field->evaluate(reached, state); !o.ok()) return o;
+  const std::vector<double> rates_here = field->rate(), integrands_here = field->integrands();
+  now = state;
+  for (std::size_t i = 0; i < states(); ++i) now[i] += (behind - reached) * rates_here[i];
+  if (Outcome o = field->evaluate(behind, now); !o.ok()) return o;
+  state = now;
+  for (std::size_t i = 0; i < integrals.size(); ++i) integrals[i] += (behind - reached) * integrands_here[i];
+  leading = field->leading();
+  shown = behind;
+  std::vector<double> weight(size());
+  weights(N_VGetArrayPointer(y.get()), weight.data());
+  double h = 0, jump = 0;
+  CVodeGetCurrentStep(memory, &h);
+  for (std::size_t i = 0; i < states(); ++i)
+    jump = std::max(jump, std::abs(h * (field->rate()[i] - rates_here[i])) * weight[i]);
+  for (std::size_t i = 0; i < integrals.size(); ++i)
+    jump = std::max(jump, std::abs(h * (field->integrands()[i] - integrands_here[i])) * weight[first_integral() + i]);
+  jumped = jump > 1;
+  return {};
+}
+
+void Sundials::Work::start_anew(double t, const std::vector<double>& from, const std::vector<double>& leading_now,
+                                const std::vector<double>& integrals_now) {
+  refused_before = refused(), setups_before = setups();
+  copy_to(y.get(), 0, from);
+  copy_to(y.get(), first_integral(), integrals_now);
+  branch = leading_now;
+  reached = t;
+  const bool good = CVodeReInit(memory, t, y.get()) == 0;
+  ANHOLON_ASSERT(good);
+}
+
+// The number of steps that the error test refused, or for which Newton's method failed.
+std::size_t Sundials::Work::refused() const {
+  long tests = 0, newton = 0;
+  if (memory && field) CVodeGetNumErrTestFails(memory, &tests), CVodeGetNumStepSolveFails(memory, &newton);
+  return refused_before + static_cast<std::size_t>(tests + newton);
+}
+
+// The number of set-ups, each of which makes the LU of a dense matrix.
+std::size_t Sundials::Work::setups() const {
+  long count = 0;
+  if (memory && field) CVodeGetNumLinSolvSetups(memory, &count);
+  return setups_before + static_cast<std::size_t>(count);
+}
+
 Sundials::Sundials(const Program& program, const std::vector<double>& parameters, const SundialsSettings& settings,
                    double t, double end, const std::vector<double>& state, const std::vector<double>& leading,
                    const std::vector<double>& integrals)
@@ -376,12 +432,18 @@ Outcome Sundials::step() {
   return work_->interpolate(work_->reached);
 }
 
-std::size_t Sundials::refused() const {
-  long tests = 0, newton = 0;
-  if (work_->memory && work_->field)
-    CVodeGetNumErrTestFails(work_->memory, &tests), CVodeGetNumStepSolveFails(work_->memory, &newton);
-  return static_cast<std::size_t>(tests + newton);
+void Sundials::stop_at(double t) {
+  const bool good = CVodeSetStopTime(work_->memory, t) == 0;
+  ANHOLON_ASSERT(good);
 }
+Outcome Sundials::pass(double behind) { return work_->pass(behind); }
+void Sundials::go_on_from(double t, const std::vector<double>& state, const std::vector<double>& leading,
+                          const std::vector<double>& integrals) {
+  if (std::exchange(work_->jumped, false)) work_->start_anew(t, state, leading, integrals);
+}
+
+std::size_t Sundials::refused() const { return work_->refused(); }
+std::size_t Sundials::setups() const { return work_->setups(); }
 
 StateRate& Sundials::rate() { return *work_->field; }
 
@@ -392,12 +454,5 @@ const std::vector<double>& Sundials::integrals() const { return work_->integrals
 std::size_t Sundials::steps() const { return work_->steps; }
 std::size_t Sundials::evaluations() const { return work_->evaluations; }
 double Sundials::drift() const { return work_->drift; }
-
-// The number of set-ups, each of which makes the LU of a dense matrix.
-std::size_t Sundials::setups() const {
-  long count = 0;
-  if (work_->memory && work_->field) CVodeGetNumLinSolvSetups(work_->memory, &count);
-  return static_cast<std::size_t>(count);
-}
 
 }  // namespace anholon

@@ -50,6 +50,14 @@ class Sundials {
   Outcome advance(double t);
   // Makes one step of a length that the method chooses; state() and the others are then at its end.
   Outcome step();
+  // Of BDF: steps end at this time, which lies ahead.
+  void stop_at(double t);
+  // Of BDF: moves state() and the others from the end of the last step, before a kink that the time alone decides, to
+  // a time a few round-offs ahead, behind it. The steps still lie behind; go_on_from() has to be called before the next
+  // one, which begins the method anew at that point if f jumps by what a step would notice.
+  Outcome pass(double behind);
+  void go_on_from(double t, const std::vector<double>& state, const std::vector<double>& leading,
+                  const std::vector<double>& integrals);
 
   // At the time of the last advance, or at the start: the state as integrated, and approximate leading derivatives.
   double time() const;

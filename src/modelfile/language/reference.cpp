@@ -79,7 +79,8 @@ error: an operator is missing before 'x'
 
 **Kinks.** `abs`, `sign`, `min`, `max`, `piecewise`, `choose` and tables switch to another function where their conditions change sign along the
 motion; `atan2(y, x)` switches where y changes sign at a negative x. The program locates the time of the switch and ends a step there; the next step
-uses the function that holds after the switch. The argument of `sqrt`, `norm`, `unit` or of a power may be zero at the start (a ball with quadratic
+uses the function that holds after the switch. BDF, a method for stiff motions, does so where the time alone decides; elsewhere its steps become short at
+a switch, and one that is taken back within a step may be missed. The argument of `sqrt`, `norm`, `unit` or of a power may be zero at the start (a ball with quadratic
 drag falls from rest) or on the way; the motion then goes on with the values on the side that it enters. If this side is not determined (dry friction
 that holds, a thrust along a velocity that is zero), the motion stops, and the outcome names the formula. A row at exactly that moment holds the value
 there: `sign` is 0, and `unit` has no value (`nan`); accelerations are those right after it.

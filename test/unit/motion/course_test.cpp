@@ -232,6 +232,72 @@ TEST(Course, StepsEndAtKinks) {
   EXPECT_LT(rk.report.method.refused, rk.report.method.steps / 10);
 }
 
+// A particle with a stiff spring, or with none to speak of, which a force of the time moves sideways; exact is y at 520.
+std::string pushed(const std::string& spring, const std::string& push) {
+  return "coordinates = [\"x\", \"y\"]\nparticle = [{name = \"a\", mass = 1, position = \"x*ex + y*ey\"}]\n"
+         "force = [{on = \"a\", vector = \"(" +
+         spring + ")*ex + (" + push +
+         ")*ey\"}]\ninitial = {x = 1, y = 0}\n"
+         "table = [{name = \"f\", x = [0, 500, 501, 502, 503], y = [0, 0, 3, 0, 0]}]\n";
+}
+
+// Between two points at which a method evaluates the force, a force may act and end. Steps end where the time alone
+// decides, so no such force is passed over.
+TEST(Course, ForcesThatActForATimeAreSeen) {
+  struct Push {
+    std::string force;
+    double y;
+  };
+  const std::string stiff = "-1e6*x - 1e5*x' - 1e5*x^3", soft = "-1e-8*x";
+  const double root = std::sqrt(std::numbers::pi);
+  for (const Push& push :
+       {Push{"piecewise(t < 500, 0, t < 510, 0.3, 0)", 45}, Push{"f(t)", 57},
+        Push{"piecewise(abs(t - 500) < 0.5, 3, 0)", 60}, Push{"3*exp(-(t - 500)^2)", 60 * root},
+        Push{"(t - 500)*exp(-(t - 500)^2)", -root / 2}, Push{"tanh(100*(t - 500)) - tanh(100*(t - 501))", 39}}) {
+    // An error of the velocity moves the particle for 20 units of time.
+    const auto expect = [&](const std::string& spring, const Asked& asked) {
+      const Result r = motion(pushed(spring, push.force), 520, asked);
+      ASSERT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+      EXPECT_NEAR(r.number(4, "y"), push.y, 20 * asked.tolerance.get_d() * (1 + std::abs(push.y))) << push.force;
+    };
+    expect(stiff, {Method::bdf, power_of_ten(6)});
+    expect(stiff, {Method::automatic, power_of_ten(6)});
+    expect(soft, {Method::runge_kutta, power_of_ten(4)});
+    expect(soft, {Method::bdf, power_of_ten(4)});
+  }
+}
+
+// Rows close to a kink, before, at and behind it, lie on the same motion, whatever the last stages of a step see.
+TEST(Course, RowsAtKinksOfTheTime) {
+  for (const Method method : {Method::runge_kutta, Method::bdf})
+    for (const int way : {1, -1}) {
+      const std::string since = way > 0 ? "t" : "-t";
+      Scenario s;
+      ASSERT_TRUE(make_scenario(test::model_of(pushed("-1e-8*x", "piecewise(" + since + " < 100, 0, " + since +
+                                                                     " < 101, 1e3, 0)")),
+                                *find_formulation("routh"), {}, s)
+                      .ok());
+      SimulationOptions o;
+      o.to = Rational(way * 200);
+      o.tolerance = power_of_ten(6);
+      o.method = method;
+      for (const Rational& t : {Rational(99), Rational(100), Rational(100) + power_of_ten(13), Rational(201, 2),
+                                Rational(101), Rational(101) + power_of_ten(13), Rational(200)})
+        o.at.push_back(Rational(way) * t);
+      std::sort(o.at.begin(), o.at.end());
+      Result r;
+      r.report = simulate(s, o, r.rows);
+      ASSERT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+      ASSERT_EQ(r.rows.rows().size(), o.at.size());
+      for (std::size_t i = 0; i < o.at.size(); ++i) {
+        const double t = std::abs(r.number(i, "t")), pushed_for = std::clamp(t - 100, 0.0, 1.0),
+                     y = 500 * pushed_for * pushed_for + 1e3 * std::max(0.0, t - 101);
+        EXPECT_NEAR(r.number(i, "y'"), way * 1e3 * pushed_for, 1e-2) << t;
+        EXPECT_NEAR(r.number(i, "y"), y, 1e-2 + 1e-5 * y) << t;
+      }
+    }
+}
+
 // A particle among many fixed attracting points: its evaluation is long, its unknowns are few.
 std::string among_many() {
   std::string x, y;
