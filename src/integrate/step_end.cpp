@@ -165,17 +165,20 @@ bool StepEnd<N>::shows_events(PresentStep<N>& step, const EventWatch<N>& events,
          shows(h);
 }
 
+// The time by which a step surely leads past a kink at `length` beyond t.
+template <Number N>
+Wider<N> StepEnd<N>::surely_past(const W& t, const W& length) const {
+  return convert<W>(unit_roundoff<N>()) * W(kPastKink) * std::max(W(abs(t)), W(abs(length))) +
+         W(std::exp(log_tolerance_)) * abs(length);
+}
+
 // Returns the time by which a step of length h ends past a kink. It is relative to the length up to the kink, or, if the
 // motion meets the kink again, to that of the whole step.
 template <Number N>
 Wider<N> StepEnd<N>::past_kink(const Kink<N>& kink, const W& t, const W& where, const W& h) const {
-  const auto roundoff = [](const W& size) { return W(convert<W>(unit_roundoff<N>()) * W(kPastKink) * abs(size)); };
-  const auto past = [&](const W& length) {
-    return W(std::max(roundoff(t), roundoff(length)) + W(std::exp(log_tolerance_)) * abs(length));
-  };
-  const W near = past(where);
-  const bool again = in_a_row_.met_again > 0 || !(abs(where) > std::max({near, roundoff(h), in_a_row_.past}) * W(4));
-  return !kink.ahead || kink.at_start || again ? past(h) : near;
+  const W near = surely_past(t, where), roundoff = convert<W>(unit_roundoff<N>()) * W(kPastKink) * abs(h);
+  const bool again = in_a_row_.met_again > 0 || !(abs(where) > std::max({near, roundoff, in_a_row_.past}) * W(4));
+  return !kink.ahead || kink.at_start || again ? surely_past(t, h) : near;
 }
 
 template <Number N>
@@ -198,8 +201,10 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
       h = first;
     else
       refused = false;
+    // A kink at the end may be found shortly beyond it.
+    const W reach = h + (forward ? surely_past(t, h) : W(-surely_past(t, h)));
     if (!kernel || kernel->may_turn())
-      kink = first_kink<N>(step.series().machine(), slots_, order_ - 1, convert<N>(h), !kernel,
+      kink = first_kink<N>(step.series().machine(), slots_, order_ - 1, convert<N>(reach), !kernel,
                            others_.give_up ? others_.slots : others_.passed_over);
     where = kink.at_start ? W(0) : kink.ahead ? convert<W>(kink.where) : h;
     past = past_kink(kink, t, where, h);

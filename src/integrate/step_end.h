@@ -112,6 +112,7 @@ class StepEnd {
   bool put_back(const Machine<N>& machine) const;
   Outcome stays_at_constraint(std::size_t equation) const;
   Outcome note_kink(bool at_start, const W& where, const W& past);
+  W surely_past(const W& t, const W& length) const;
   W past_kink(const Kink<N>& kink, const W& t, const W& where, const W& h) const;
   bool are_too_many(const Kink<N>& kink, const W& where, const W& past, const W& whole);
   bool may_end_at(PresentStep<N>& step, const EventWatch<N>& events, const W& h);
