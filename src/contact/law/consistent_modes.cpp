@@ -91,6 +91,16 @@ std::optional<Real> slip_that_begins(const ContactRows& rows, const ContactMode&
   return v[0] * mode.direction[0] + v[1] * mode.direction[1];
 }
 
+// Gives slips that begin against no friction the direction of their accelerations, which do not depend on it.
+void turn_smooth_slips(const ContactProblem& p, ContactSolution& f) {
+  for (std::size_t c = 0; c < p.contacts.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    if (f.modes[c].touch != Touch::slips || !rows.rough || rows.moves || rows.friction != 0) continue;
+    const auto v = slip_rate(rows, f.x);
+    if (const Real size = std::hypot(v[0], v[1]); size > 0) f.modes[c].direction = {v[0] / size, v[1] / size};
+  }
+}
+
 // True if a contact at rest that may stick, and that the others hold, slips in this solution by round-off only.
 bool slips_by_round_off(const ContactProblem& p, const ContactSolution& f, Real free) {
   const auto sticks = [](const ContactMode& m) { return m.touch == Touch::sticks; };
@@ -237,6 +247,7 @@ class Solutions {
     share_forces(p_, modes);
     auto f = with_directions(p_, modes, free_);
     if (f && shares_friction(modes)) f = distributed(p_, *f);
+    if (f) turn_smooth_slips(p_, *f);
     return f;
   }
 
