@@ -132,7 +132,7 @@ class HybridMotion {
                               [this](const Rational& to, ContactState& at) { return segments_->last_until(to, at); }))
         continue;
       joined_.take_back(event_name(c, ModeChange::slips));
-      bodies_.excluded[c].stick = false;
+      bodies_.may_stick_again(c);
     }
   }
 
@@ -148,10 +148,10 @@ class HybridMotion {
     if (struck)
       if (const auto c = bodies_.on_edge()) return on_edge(bodies_.contacts[*c], now());
     bodies_.stop_ended_slips();
-    ContactProblem p = bodies_.with_touching();
-    slips_->guess_directions(p);
-    const std::vector<ContactSolution> list = consistent_modes(p);
+    ContactProblem p;
+    std::vector<ContactSolution> list = modes_now(p);
     if (list.size() != 1) return faults_.undecided(list.size());
+    if (!struck && !over_border) leave_open(p, list);
     slips_->tell_who_slips_too(list[0].modes);
     bodies_.modes = list[0].modes;
     if (over_border)
@@ -184,6 +184,37 @@ class HybridMotion {
     bodies_.bound_rest();
     // The check is made again, because coordinates that are round-off were set to zero.
     return faults_.not_regular();
+  }
+
+  // Returns the consistent modes, and their equations. If what earlier events exclude leaves none, it is allowed again.
+  std::vector<ContactSolution> modes_now(ContactProblem& p) {
+    const auto find = [&] {
+      p = bodies_.with_touching();
+      slips_->guess_directions(p);
+      return consistent_modes(p);
+    };
+    std::vector<ContactSolution> list = find();
+    const bool any = std::any_of(bodies_.earlier.begin(), bodies_.earlier.end(),
+                                 [](const TouchingBodies::Excluded& e) { return e.touch || e.stick; });
+    if (list.size() == 1 || !any) return list;
+    bodies_.earlier.assign(bodies_.contacts.size(), {});
+    return find();
+  }
+
+  // Leaves contacts open that were open, and that nothing presses now.
+  void leave_open(ContactProblem& p, std::vector<ContactSolution>& list) const {
+    const long double least = kRest * size_of_forces(p, list[0]);
+    ContactProblem open = p;
+    bool any = false;
+    for (std::size_t c = 0; c < bodies_.modes.size(); ++c) {
+      if (bodies_.modes[c].touch != Touch::open || list[0].modes[c].touch == Touch::open || p.contacts[c].under)
+        continue;
+      if (bodies_.near.has_reached(c) || list[0].normal[c] > least) continue;
+      open.contacts[c].may_touch = false, any = true;
+    }
+    if (!any) return;
+    std::vector<ContactSolution> found = consistent_modes(open);
+    if (found.size() == 1) p = std::move(open), list = std::move(found);
   }
 
   // Computes impacts where a closed gap shrinks: at a border of a surface, first those on the side from which the
@@ -271,6 +302,8 @@ class HybridMotion {
       const long double beyond =
           std::hypot(now.friction[c][0], now.friction[c][1]) - p.contacts[c].static_friction * now.normal[c];
       if (m.touch == Touch::sticks) m.slack = std::max(m.slack, 2 * beyond);
+      // A load may be negative by round-off in the same way.
+      if (m.touch != Touch::open && !bodies_.contacts[c].under) m.slack = std::max(m.slack, -2 * now.normal[c]);
     }
   }
 

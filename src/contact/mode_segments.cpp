@@ -99,7 +99,7 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
     return true;
   }
   if (!outcome.ok()) return false;
-  const bool changed = note(r.events, mode->of.events);
+  const bool changed = note(r.events, mode->of.events, Rational(bodies_.at.t - from.t).get_d());
   return (changed || to < end_) && every_event_known && bodies_.at.t < end_;
 }
 
@@ -119,8 +119,17 @@ bool ModeSegments::goes_on_slipping(const Rational& to) const {
              [](const ContactMode& m) { return m.touch == Touch::slips && m.begins; });
 }
 
-bool ModeSegments::note(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known) {
+bool ModeSegments::note(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known,
+                        double length) {
+  // Forces that are round-off at the start of the segment have grown beyond their slack within this time.
+  constexpr long double kRoundOff = 1e-6L;
+  std::vector<TouchingBodies::Excluded> before = bodies_.earlier;
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    before[c].touch = before[c].touch || bodies_.excluded[c].touch;
+    before[c].stick = before[c].stick || bodies_.excluded[c].stick;
+  }
   nothing_has_changed();
+  if (length * std::max(bodies_.dynamics.speed(), 1.0L) < kRoundOff) bodies_.earlier = std::move(before);
   bool changed = false;
   for (const EventReport& e : events) {
     const auto at = known.find(e.name);
@@ -140,6 +149,7 @@ bool ModeSegments::note(const std::vector<EventReport>& events, const std::map<s
 void ModeSegments::nothing_has_changed() {
   bodies_.borders.segment_has_ended();
   bodies_.excluded.assign(bodies_.contacts.size(), {});
+  bodies_.earlier.assign(bodies_.contacts.size(), {});
   bodies_.turned.assign(bodies_.contacts.size(), false);
 }
 

@@ -53,7 +53,8 @@ class ModeSegments {
   // True if the segment ended where a slip that has begun goes on unchanged, except for the formula of its direction.
   bool goes_on_slipping(const Rational& to) const;
   // Notes what the events of a segment exclude; returns true if one has changed the modes.
-  bool note(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known);
+  // `length`: of the segment.
+  bool note(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known, double length);
   void nothing_has_changed();
 
   const SimulationOptions& o_;

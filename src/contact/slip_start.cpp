@@ -66,7 +66,7 @@ bool SlipStart::hold(Outcome& outcome) {
   if (!(h > 2 * trial)) return true;
   if (const Hold how = hold_for(c, h - trial, outcome); how != Hold::to_its_end) return how != Hold::motion_ends;
   held_[c].time = h;
-  if (holds_again(c)) bodies_.excluded[c].stick = false;
+  if (holds_again(c)) bodies_.may_stick_again(c);
   return true;
 }
 
@@ -194,7 +194,8 @@ bool SlipStart::share_anew(Outcome& outcome) {
   if (sticks && list[0].spare.value_or(0) > kSpared) {
     for (const std::size_t c : limited) {
       joined_.take_back(bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::slips));
-      bodies_.excluded[c].stick = told_[c] = false;
+      bodies_.may_stick_again(c);
+      told_[c] = false;
     }
     return true;
   }
@@ -214,7 +215,7 @@ bool SlipStart::share_anew(Outcome& outcome) {
     bodies_.modes[c].at_bound = list.size() == 1 && list[0].normal[c] > 0 && p.contacts[c].static_friction > 0 &&
                                 (list[0].modes[c].touch == Touch::slips || at_limit(c));
   together_ = last > 0 ? kLonger * last : kTrial / std::max(bodies_.dynamics.speed(), 1.0L);
-  for (const std::size_t c : limited) bodies_.excluded[c].stick = false;
+  for (const std::size_t c : limited) bodies_.may_stick_again(c);
   return hold_together(together_, outcome) && hold_to_grow(outcome);
 }
 

@@ -15,7 +15,7 @@ static constexpr long double kLeftOver = 1e-16L;
 
 TouchingBodies::TouchingBodies(Workspace& s, const std::vector<Contact>& of, ContactState start)
     : contacts(of), dynamics(s, of), at(std::move(start)), borders(s, of), near(of, dynamics, at), excluded(of.size()),
-      turned(of.size(), false) {
+      earlier(of.size()), turned(of.size(), false) {
   borders.begin(at);
 }
 
@@ -28,9 +28,10 @@ ContactProblem TouchingBodies::with_touching() const {
   ContactProblem p = dynamics.accelerations();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     ContactRows& rows = p.contacts[c];
-    rows.may_touch = near.closed(c) && near.gap_rate(c) == 0 && !excluded[c].touch;
-    rows.may_stick = !excluded[c].stick;
-    if (excluded[c].touch) rows.before = before * near.late();
+    const bool leaves = excluded[c].touch || earlier[c].touch;
+    rows.may_touch = near.closed(c) && near.gap_rate(c) == 0 && !leaves;
+    rows.may_stick = !excluded[c].stick && !earlier[c].stick;
+    if (leaves) rows.before = before * near.late();
     rows.moves = rows.moves && !slip_has_ended(c);
     // A gap that is open, or opens, is not bounded by its acceleration.
     if (!near.closed(c) || near.gap_rate(c) > 0) rows.normal.assign(at.q.size(), 0), rows.normal_rate = 0;

@@ -17,10 +17,13 @@ struct TouchingBodies {
     bool touch = false, stick = false, slips = false;
   };
 
+  // Allows a contact to stick that the last events exclude from it.
+  void may_stick_again(std::size_t c) { excluded[c].stick = earlier[c].stick = false; }
+
   // Evaluates the equations at the state, and notes how fast the bodies might fall from it.
   void look();
   // The equations of the accelerations, in which each contact may do what its gap and the event at the end of the last
-  // segment allow.
+  // segment allow, with what earlier events exclude.
   ContactProblem with_touching() const;
   // True if a slip has ended, by itself in the last segment, or because another one has ended and bodies join the two.
   bool slip_has_ended(std::size_t c) const;
@@ -89,6 +92,9 @@ struct TouchingBodies {
   RoundOff near;
   ContactModes modes;  // of the last segment, or of the next one
   std::vector<Excluded> excluded;
+  // What the events before the last segment exclude, if its length is that of round-off: two contacts that stop to
+  // press and to stick together would otherwise be chosen in turn.
+  std::vector<Excluded> earlier;
   std::vector<bool> turned;             // true if the last segment ended because a slip turned
   long double before = 0;               // the largest acceleration without contacts at the start of the last mode
   std::vector<long double> most_place;  // the largest value of each coordinate at a change of mode

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
+#include "contact/law/contact_groups.h"
 #include "contact/law/least_constraint.h"
 #include "contact/law/rows.h"
 #include "contact/law/shared_forces.h"
@@ -89,6 +91,16 @@ std::optional<Real> slip_that_begins(const ContactRows& rows, const ContactMode&
   if (mode.touch != Touch::slips || !rows.rough || rows.moves || !rows.may_stick) return std::nullopt;
   const auto v = slip_rate(rows, x);
   return v[0] * mode.direction[0] + v[1] * mode.direction[1];
+}
+
+// Gives slips that begin against no friction the direction of their accelerations, which do not depend on it.
+void turn_smooth_slips(const ContactProblem& p, ContactSolution& f) {
+  for (std::size_t c = 0; c < p.contacts.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    if (f.modes[c].touch != Touch::slips || !rows.rough || rows.moves || rows.friction != 0) continue;
+    const auto v = slip_rate(rows, f.x);
+    if (const Real size = std::hypot(v[0], v[1]); size > 0) f.modes[c].direction = {v[0] / size, v[1] / size};
+  }
 }
 
 // True if a contact at rest that may stick, and that the others hold, slips in this solution by round-off only.
@@ -237,6 +249,7 @@ class Solutions {
     share_forces(p_, modes);
     auto f = with_directions(p_, modes, free_);
     if (f && shares_friction(modes)) f = distributed(p_, *f);
+    if (f) turn_smooth_slips(p_, *f);
     return f;
   }
 
@@ -245,21 +258,72 @@ class Solutions {
   std::vector<ContactSolution> list_;
 };
 
-// Returns the solution near modes of least constraint. These modes cannot tell contacts that static friction barely holds
-// from contacts that begin to slip with less friction: such contacts stick if they can.
-std::optional<ContactSolution> near(const ContactProblem& p, const Solutions& solutions, const ContactModes& modes) {
-  ContactModes held = modes;
-  bool any = false;
-  for (std::size_t c = 0; c < modes.size(); ++c) {
-    const ContactRows& rows = p.contacts[c];
-    if (modes[c].touch != Touch::slips || !rows.rough || rows.moves || !rows.may_stick) continue;
-    if (rows.friction == rows.static_friction) continue;
-    held[c].touch = Touch::sticks, any = true;
+// True if these contacts, if they are slow, are inside of their cones by more than round-off.
+bool inside_cones(const ContactProblem& p, const ContactSolution& f, const std::vector<bool>& list,
+                  const std::vector<bool>& slow) {
+  constexpr Real kInside = 1e-12L;
+  for (std::size_t c = 0; c < list.size(); ++c) {
+    const Real most = p.contacts[c].static_friction * f.normal[c];
+    if (list[c] && slow[c] && !(std::hypot(f.friction[c][0], f.friction[c][1]) < (1 - kInside) * most)) return false;
   }
-  if (any)
-    if (auto f = solutions.judge(held)) return f;
-  return solutions.settle(modes);
+  return true;
 }
+
+// The contacts that slip in modes of least constraint, and might stick. Those modes cannot tell contacts that static
+// friction barely holds from contacts that begin to slip: such contacts stick if they can. A contact with one coefficient
+// begins to slip slowly, so that round-off of its cone would hold it; it sticks if it is inside.
+class MightStick {
+ public:
+  MightStick(const ContactProblem& p, const Solutions& solutions, const ContactModes& modes)
+      : p_(p), solutions_(solutions), modes_(modes), might_(modes.size(), false), slow_(modes.size(), false),
+        groups_(contact_groups(p)) {
+    for (std::size_t c = 0; c < modes.size(); ++c) {
+      const ContactRows& rows = p.contacts[c];
+      if (modes[c].touch != Touch::slips || !rows.rough || rows.moves || !rows.may_stick) continue;
+      might_[c] = true;
+      slow_[c] = rows.friction == rows.static_friction;
+    }
+  }
+
+  // Returns the solution in which as many of them stick as can.
+  std::optional<ContactSolution> find() {
+    if (auto f = all_of(might_)) return f;
+    std::set<std::size_t> groups;
+    for (std::size_t c = 0; c < modes_.size(); ++c)
+      if (might_[c]) groups.insert(groups_[c]);
+    // Bodies that nothing joins do so one after the other.
+    for (auto g = groups.begin(); groups.size() > 1 && g != groups.end(); ++g) {
+      std::vector<bool> list = might_;
+      for (std::size_t c = 0; c < list.size(); ++c) list[c] = list[c] && groups_[c] == *g;
+      if (all_of(list) || all_of(without_slow(list))) modes_ = tried_;
+    }
+    if (auto f = all_of(without_slow(might_))) return f;
+    return solutions_.settle(modes_);
+  }
+
+ private:
+  std::vector<bool> without_slow(std::vector<bool> list) const {
+    for (std::size_t c = 0; c < list.size(); ++c) list[c] = list[c] && !slow_[c];
+    return list;
+  }
+  // Returns the solution in which these contacts stick, if there is any of them.
+  std::optional<ContactSolution> all_of(const std::vector<bool>& list) {
+    tried_ = modes_;
+    bool any = false;
+    for (std::size_t c = 0; c < list.size(); ++c)
+      if (list[c]) tried_[c].touch = Touch::sticks, any = true;
+    if (!any) return std::nullopt;
+    auto f = solutions_.judge(tried_);
+    if (f && !inside_cones(p_, *f, list, slow_)) f.reset();
+    return f;
+  }
+
+  const ContactProblem& p_;
+  const Solutions& solutions_;
+  ContactModes modes_, tried_;
+  std::vector<bool> might_, slow_;
+  std::vector<std::size_t> groups_;
+};
 
 }  // namespace
 
@@ -285,7 +349,7 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
     const auto [at, first] = found.try_emplace(touches, false);
     if (first)
       if (const auto guess = modes_of_least_constraint(p, touches))
-        if (const auto f = near(p, solutions, *guess)) at->second = true, solutions.add(*f);
+        if (const auto f = MightStick(p, solutions, *guess).find()) at->second = true, solutions.add(*f);
     if (at->second) continue;
     // A second solution with the same touching contacts would be the same motion.
     if (const auto f = solutions.judge(modes); f && !solutions.slips_by_round_off(*f))

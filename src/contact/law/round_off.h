@@ -15,6 +15,7 @@ class RoundOff {
   void segment_has_ended(long double length);
   // Notes that the event at its end closes this gap.
   void reached(std::size_t contact) { reached_[contact] = true; }
+  bool has_reached(std::size_t contact) const { return reached_[contact]; }
 
   // A place is known to this part of the size of its terms.
   static constexpr long double kPlace = 1e-14L;

@@ -52,9 +52,9 @@ std::vector<long double> numbers_of(const ContactMode& m) {
 class ModeBuilder {
  public:
   ModeBuilder(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes, ModeEnds ends)
-      : model_(clone(model)), g_(*model_->graph), ends_(ends) {
+      : model_(clone(model)), g_(*model_->graph), ends_(ends), shares_friction_(anholon::shares_friction(modes)) {
     begin(contacts);
-    if (!shares_friction(modes)) return;
+    if (!shares_friction_) return;
     for (std::size_t c = 0; c < contacts.size(); ++c)
       for (std::size_t a = 0; modes[c].touch == Touch::sticks && a < contacts[c].slip.size(); ++a)
         if (!modes[c].shares[a].shared) held_.push_back({{c, a}, hold(contacts[c], a)});
@@ -218,7 +218,7 @@ class ModeBuilder {
 
   Expr stick(const Contact& c, const ContactMode& mode, Expr normal) {
     std::vector<Expr> forces;
-    if (held_.empty())
+    if (!shares_friction_)
       for (std::size_t a = 0; a < c.slip.size(); ++a) forces.push_back(hold(c, a));
     else
       forces = shared(c, mode);
@@ -313,7 +313,8 @@ class ModeBuilder {
     HeldComponent place;
     Expr force;
   };
-  std::vector<Held> held_;                     // of shared friction
+  bool shares_friction_;
+  std::vector<Held> held_;                     // of shared friction; empty if gaps and constraints hold all of it
   std::vector<Expr> loads_;                    // the loads that hold the gaps so far
   std::vector<Expr> normals_, numbers_;        // numbers_: of the contact that is being added
   std::vector<std::vector<Expr>> components_;  // of friction, along the components of the slip
