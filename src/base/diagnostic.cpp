@@ -136,14 +136,14 @@ void Diagnostics::gather(const std::function<bool(const std::string&)>& is_one) 
   for (auto& [message, places] : alike) {
     std::stable_sort(places.begin(), places.end(),
                      [&](std::size_t a, std::size_t b) { return before(list_[a].span, list_[b].span); });
-    std::vector<Span> others;
+    std::vector<Span> elsewhere;
     for (std::size_t k = 1; k < places.size(); ++k) {
       left_out[places[k]] = true;
-      if (const Span& other = list_[places[k]].span; before(list_[places[k - 1]].span, other)) others.push_back(other);
+      if (const Span& other = list_[places[k]].span; before(list_[places[k - 1]].span, other)) elsewhere.push_back(other);
     }
-    if (others.empty()) continue;
+    if (elsewhere.empty()) continue;
     std::string& hint = list_[places[0]].hint;
-    hint += (hint.empty() ? "" : "; ") + said_of_others(others, list_[places[0]].span);
+    hint += (hint.empty() ? "" : "; ") + said_of_others(elsewhere, list_[places[0]].span);
   }
   std::vector<Diagnostic> kept;
   for (std::size_t k = 0; k < list_.size(); ++k)

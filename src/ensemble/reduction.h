@@ -6,8 +6,9 @@
 // is not the formula over the whole step (the formula has a smaller radius of convergence than the motion, or no
 // series, like a norm that is zero), pieces of the step get polynomials of their own, through values of the formula.
 // Pieces begin and end where a function that is nearly constant at the start of the step may vary, such as exp in a
-// pulse. A formula that is unbounded has no greatest or no least value, and one whose integral diverges has no mean:
-// the number is NaN. A last value needs the formula at the end alone, and shortens no step.
+// pulse. A formula that is unbounded has no greatest or no least value, and one whose integral diverges, or
+// converges too slowly to show it, has no mean: the number is NaN. A last value needs the formula at the end alone, and
+// shortens no step.
 #pragma once
 #include <string>
 #include <vector>

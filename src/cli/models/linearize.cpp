@@ -7,6 +7,7 @@
 #include "cli/models/show.h"
 #include "cli/say.h"
 #include "linear/study.h"
+#include "observe/rows/quantity_units.h"
 
 namespace anholon::cli {
 
@@ -272,7 +273,10 @@ void print_model(const LinearModel& m, std::optional<int> asked) {
 
 void print_range(const Scenario& s, const Linearization& l, const ParameterRange& range, int digits) {
   const std::string& parameter = s.model->parameters[range.parameter].name;
-  say(stdout, "eigenvalues over %s\n", parameter.c_str());
+  const auto units = quantity_units(*s.model, {});
+  const auto unit = units.find(parameter);
+  const std::string in = unit != units.end() && !unit->second.empty() ? " " + unit->second : "";
+  say(stdout, "eigenvalues over %s%s%s\n", parameter.c_str(), in.empty() ? "" : ", in", in.c_str());
   std::string before;
   for (std::size_t k = 0; k < l.results.size(); ++k) {
     const LinearResult& r = l.results[k];
@@ -295,7 +299,7 @@ void print_range(const Scenario& s, const Linearization& l, const ParameterRange
   }
   say(stdout, "\ncrossings of the imaginary axis%s\n", l.crossings.empty() ? ": none between these values" : "");
   for (const Crossing& c : l.crossings)
-    say(stdout, "  %s = %s   %s, %s\n", parameter.c_str(), text(c.value, digits).c_str(),
+    say(stdout, "  %s = %s%s   %s, %s\n", parameter.c_str(), text(c.value, digits).c_str(), in.c_str(),
         c.frequency > Multi(0) ? ("± " + text(c.frequency, digits) + "i").c_str() : "0", meaning(c).c_str());
   for (const std::string& n : l.notes) say(stdout, "note: %s\n", n.c_str());
 }
