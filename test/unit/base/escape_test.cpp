@@ -93,7 +93,7 @@ TEST(Escape, FormatsKeepTheirOwnSigns) {
   }
   EXPECT_EQ(latex_escape("\\input{a_b} 5%"), "\\textbackslash{}input\\{a\\_b\\} 5\\%");
   EXPECT_EQ(comment_line("a*/b/*"), "a* /b/ *");
-  EXPECT_EQ(comment_line("why?? a ??/ b ???= c"), "why?? a ?? / b ??? = c");
+  EXPECT_EQ(comment_line("why?? a ?\?/ b ?\?\?= c"), "why?? a ?? / b ??? = c");
   EXPECT_EQ(csv_cell("D(x,4)"), "\"D(x,4)\"");
   EXPECT_EQ(csv_cell("a\"b"), "\"a\"\"b\"");
   EXPECT_EQ(csv_cell("x'"), "x'");
