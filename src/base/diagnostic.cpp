@@ -121,7 +121,7 @@ static std::string said_of_others(const std::vector<Span>& others, const Span& f
   for (const Span& o : others)
     if (o.file == first.file && o.line != first.line && (lines.empty() || lines.back() != o.line))
       lines.push_back(o.line);
-  if (lines.empty()) return others[0].file == first.file ? "it stands in this line again" : "it stands elsewhere, too";
+  if (lines.empty()) return others[0].file == first.file ? "it stands in this line again" : "it stands further, too";
   std::string list;
   for (std::size_t k = 0; k < std::min(lines.size(), kNamed); ++k) list += (k ? ", " : "") + std::to_string(lines[k]);
   return std::string(lines.size() > 1 ? "it stands in lines " : "it stands in line ") + list +
@@ -136,14 +136,14 @@ void Diagnostics::gather(const std::function<bool(const std::string&)>& is_one) 
   for (auto& [message, places] : alike) {
     std::stable_sort(places.begin(), places.end(),
                      [&](std::size_t a, std::size_t b) { return before(list_[a].span, list_[b].span); });
-    std::vector<Span> elsewhere;
+    std::vector<Span> further;
     for (std::size_t k = 1; k < places.size(); ++k) {
       left_out[places[k]] = true;
-      if (const Span& other = list_[places[k]].span; before(list_[places[k - 1]].span, other)) elsewhere.push_back(other);
+      if (const Span& other = list_[places[k]].span; before(list_[places[k - 1]].span, other)) further.push_back(other);
     }
-    if (elsewhere.empty()) continue;
+    if (further.empty()) continue;
     std::string& hint = list_[places[0]].hint;
-    hint += (hint.empty() ? "" : "; ") + said_of_others(elsewhere, list_[places[0]].span);
+    hint += (hint.empty() ? "" : "; ") + said_of_others(further, list_[places[0]].span);
   }
   std::vector<Diagnostic> kept;
   for (std::size_t k = 0; k < list_.size(); ++k)

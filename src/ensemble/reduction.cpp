@@ -269,7 +269,9 @@ bool Reducer::holds(const ReducedStep& step, std::size_t formula) {
   constexpr double kFalls = 1e-3, kTolerances = 100, kNearEnd = 31.0 / 32;
   constexpr int kPoints = 7, kNoise = 4096;
   const int degree = step.degree;
+  arguments_reach_ = true;
   if (step.h != 0) find_hidden(step, formula);
+  if (!arguments_reach_) return false;
   if (degree < 2 || step.h == 0) return step.h == 0 && std::isfinite(polynomial_[0]);
   double power = 1, most = 0, end = 0;
   for (int k = 0; k <= degree; ++k, power *= step.h) {
@@ -296,7 +298,8 @@ void Reducer::find_hidden(const ReducedStep& step, std::size_t formula) {
   const auto add = [&](const Hiding& function, const std::vector<double>& argument) {
     const std::vector<double> nothing(argument.size(), std::numeric_limits<double>::quiet_NaN());
     std::vector<double> points;
-    add_hidden_points(function, argument.data(), nothing.data(), static_cast<int>(argument.size()) - 1, 1.0, points);
+    const int last = static_cast<int>(argument.size()) - 1;
+    if (!add_hidden_points(function, argument.data(), nothing.data(), last, 1.0, points)) arguments_reach_ = false;
     for (const double u : points)
       if (u > 0 && u < 1) hidden_.push_back(u * step.h);
   };

@@ -106,6 +106,7 @@ class Reducer {
   std::vector<double> polynomial_;
   // Points within the step where the formula may do something that its polynomial does not show.
   std::vector<double> hidden_;
+  bool arguments_reach_ = true;  // the polynomials of the arguments of hiding functions reach over the step
   double length_ = 0;
   std::size_t kinks_ = 0;
   bool foretold_ = false;  // the last values are those of polynomials that were not compared with values

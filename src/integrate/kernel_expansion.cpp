@@ -186,12 +186,12 @@ double KernelExpansion::coefficient(std::size_t j, int k) const {
   return own && k <= plan.stages + plan.d[*own] ? kernel_->coefficient(*own, k, lane_) : 0;
 }
 
-std::vector<double> KernelExpansion::hidden_points(double h) const {
-  std::vector<double> points;
+bool KernelExpansion::add_hidden_points(double h, std::vector<double>& points) const {
   const Plan& plan = kernel_->plan().plan();
-  if (plan.hiding.empty()) return points;
+  if (plan.hiding.empty()) return true;
   kernel_->show_last();
   std::vector<double> argument, value;
+  bool reach = true;
   for (const Plan::HidingSeries& slot : plan.hiding) {
     if (hides_nothing(slot.function, kernel_->whole_series(slot.argument, lane_),
                       static_cast<std::size_t>(kernel_->lanes()), order_ - 1, h))
@@ -201,9 +201,9 @@ std::vector<double> KernelExpansion::hidden_points(double h) const {
       argument[static_cast<std::size_t>(k)] = kernel_->series(slot.argument, k, lane_);
       value[static_cast<std::size_t>(k)] = kernel_->series(slot.value, k, lane_);
     }
-    add_hidden_points(slot.function, argument.data(), value.data(), order_ - 1, h, points);
+    if (!anholon::add_hidden_points(slot.function, argument.data(), value.data(), order_ - 1, h, points)) reach = false;
   }
-  return points;
+  return reach;
 }
 
 void KernelExpansion::state_at(const W& begun, const W& h, std::vector<W>& state, std::vector<W>& leading) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "integrate/series/hidden_points.h"
 #include "integrate/series/time_kink.h"
@@ -17,6 +18,9 @@ constexpr int kPastKink = 32;
 constexpr int kPastTime = 4;
 // After so many steps in a row that kinks cut shortly after their start, the motion stays at the kink.
 constexpr int kMostShortKinks = 20;
+// The motion goes back to a kink in a time that is a multiple of that by which it went past: the forces on both sides
+// differ. It counts as short up to this multiple, and up to this part of the time between the kinks before.
+constexpr double kMostTimes = 1e6, kMostPart = 1e-3, kLeastTimes = 4;
 
 // A step of at most this many round-offs of the time is not shortened.
 constexpr int kLeastRoundoffs = 64;
@@ -110,13 +114,17 @@ template <Number N>
 void StepEnd<N>::find_hidden(PresentStep<N>& step, const W& h) {
   hidden_.clear();
   const N length = convert<N>(h);
+  reach_ = true;
   if (const KernelExpansion* kernel = step.expander.kernel()) {
-    for (const double x : kernel->hidden_points(to_double(length))) hidden_.push_back(N(x));
+    std::vector<double> points;
+    reach_ = kernel->add_hidden_points(to_double(length), points);
+    for (const double x : points) hidden_.push_back(N(x));
   } else {
     const Machine<N>& machine = step.series().machine();
     for (const auto& [slot, hides] : hiding_)
-      add_hidden_points(hides.function, machine.series(hides.argument), machine.series(slot), order_ - 1, length,
-                        hidden_);
+      if (!add_hidden_points(hides.function, machine.series(hides.argument), machine.series(slot), order_ - 1, length,
+                             hidden_))
+        reach_ = false;
   }
   std::sort(hidden_.begin(), hidden_.end(), [](const N& a, const N& b) { return abs(a) < abs(b); });
 }
@@ -127,6 +135,7 @@ bool StepEnd<N>::may_end_at(PresentStep<N>& step, const EventWatch<N>& events, c
   const N length = convert<N>(h);
   find_hidden(step, h);
   check_.begin(length, hidden_);
+  if (!reach_ && check_.refuse() == EndCheck<N>::Next::shorten) return false;
   for (;;) {
     const bool decides = check_.decides();
     const N where = check_.where();
@@ -224,10 +233,9 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
     return shorten(step, events, h, whole);
   }
   in_a_row_.met_again = at_kink_ && !(abs(where) > past * W(4)) ? in_a_row_.met_again + 1 : 0;
-  in_a_row_.past = W(0);
   if (Outcome o = note_kink(kink.at_start, where, past); !o.ok() || !at_kink_) return o;
   const W to = beyond(step, events, kink, where, length_past(step, where, past, forward), forward);
-  in_a_row_.past = abs(W(to - where));
+  in_a_row_.past_before = std::exchange(in_a_row_.past, W(abs(W(to - where))));
   if (abs(to) < abs(h)) h = to, ++kinks_;
   return {};
 }
@@ -243,7 +251,7 @@ bool StepEnd<N>::are_too_many(const Kink<N>& kink, const W& where, const W& past
                                      : kink.ahead && of_others(kink.argument));
   others_.shortened = theirs && abs(where) < whole * W(kMuchShorter) ? others_.shortened + 1 : 0;
   return others_.shortened > kMost ||
-         (theirs && !kink.at_start && in_a_row_.short_kinks >= kMostShortKinks && !(abs(where) > past * W(4)));
+         (theirs && !kink.at_start && in_a_row_.short_kinks >= kMostShortKinks && is_short(where, past));
 }
 
 // Returns how far a step goes beyond a kink. A motion that begins at rest at a kink leaves it with the square of the
@@ -295,10 +303,19 @@ Wider<N> StepEnd<N>::beyond(PresentStep<N>& step, const EventWatch<N>& events, c
   return short_of ? W(to + least) : to;
 }
 
+// True if the motion meets a kink so soon that it may stay there.
+template <Number N>
+bool StepEnd<N>::is_short(const W& where, const W& past) const {
+  const double times = std::clamp(kMostPart / std::exp(log_tolerance_), kLeastTimes, kMostTimes);
+  return !(abs(where) >
+           std::max(W(past * W(kLeastTimes)), W(std::max(in_a_row_.past, in_a_row_.past_before) * W(times))));
+}
+
 // At a kink, functions are taken one-sided along the motion: a very short step finds the side.
 template <Number N>
 Outcome StepEnd<N>::note_kink(bool at_start, const W& where, const W& past) {
-  in_a_row_.short_kinks = at_kink_ && !at_start && !(abs(where) > past * W(4)) ? in_a_row_.short_kinks + 1 : 0;
+  in_a_row_.short_kinks = at_kink_ && !at_start && is_short(where, past) ? in_a_row_.short_kinks + 1 : 0;
+  if (!at_kink_) in_a_row_.past = in_a_row_.past_before = W(0);
   if (in_a_row_.short_kinks <= kMostShortKinks) return {};
   return {OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign, norm, piecewise or table",
           "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such "
@@ -416,7 +433,7 @@ LookAtEnd StepEnd<N>::look(KernelExpansion& kernel, const W& t, const N& horizon
   if (velocities_jump(kernel, t, horizon)) return LookAtEnd::by_reference;
   const W h = aimed_ - t;
   const N length = convert<N>(looked_);
-  switch (looked_ == W(0) ? EndCheck<N>::Next::good : check_.seen(N(kernel.defect()))) {
+  switch (looked_ == W(0) ? EndCheck<N>::Next::good : reach_ ? check_.seen(N(kernel.defect())) : check_.refuse()) {
   case EndCheck<N>::Next::good:
     if (check_.loses_digits()) return LookAtEnd::by_reference;
     if (sent_ == h) return LookAtEnd::good;

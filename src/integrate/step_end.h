@@ -98,7 +98,7 @@ class StepEnd {
   struct InARow {
     int short_kinks = 0;  // steps that were cut by a kink shortly after their start
     int met_again = 0;    // steps that were cut by a kink at their start or shortly after it
-    W past{0};            // how far the last step went past its kink; 0 without a kink
+    W past{0}, past_before{0};  // how far the last step and the one before went past their kinks; 0 without a kink
   };
   struct Hidden {
     std::uint32_t slot;
@@ -112,6 +112,7 @@ class StepEnd {
   bool put_back(const Machine<N>& machine) const;
   Outcome stays_at_constraint(std::size_t equation) const;
   Outcome note_kink(bool at_start, const W& where, const W& past);
+  bool is_short(const W& where, const W& past) const;
   W surely_past(const W& t, const W& length) const;
   W past_kink(const Kink<N>& kink, const W& t, const W& where, const W& h) const;
   bool are_too_many(const Kink<N>& kink, const W& where, const W& past, const W& whole);
@@ -131,6 +132,7 @@ class StepEnd {
   Others others_;
   std::vector<Hidden> hiding_;  // slots whose function may do what its series do not show
   std::vector<N> hidden_;       // points within the step to be looked at
+  bool reach_ = true;           // the arguments of these functions have series that reach over the step
   std::vector<N> residual_, change_;
   W aimed_{0};            // the end of the step
   bool arrives_ = false;  // the step ends where the caller has set the end

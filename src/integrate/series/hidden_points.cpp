@@ -46,6 +46,17 @@ N extremum(Value u, N low, N high, bool up) {
   return (low + high) / N(2);
 }
 
+// True if the last terms of a series at h are small against `size`, or if there are none to judge by.
+template <Number N>
+bool reaches(const N* c, int degree, const N& h, const N& size) {
+  constexpr double kSmall = 0.01;
+  if (degree < 2) return true;
+  N power(1);
+  for (int k = 1; k < degree; ++k) power *= h;
+  const N tail = (abs(c[degree - 1]) + abs(c[degree]) * h) * power;
+  return !is_finite(tail) || tail <= size * N(kSmall);
+}
+
 }  // namespace
 
 // Bounds the change by a sum of absolute terms, as four partial sums that do not depend on each other.
@@ -69,9 +80,9 @@ bool hides_nothing(const Hiding& function, const N* argument, std::size_t stride
 }
 
 template <Number N>
-void add_hidden_points(const Hiding& function, const N* argument, const N* value, int degree, const N& h,
+bool add_hidden_points(const Hiding& function, const N* argument, const N* value, int degree, const N& h,
                        std::vector<N>& points) {
-  if (hides_nothing(function, argument, 1, degree, h)) return;
+  if (hides_nothing(function, argument, 1, degree, h)) return true;
   const N length = abs(h);
   N moves(0);
   for (int k = degree; k >= 1; --k) moves = (moves + abs(argument[k])) * length;
@@ -109,7 +120,7 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
     }
   };
   const auto end_of = [&](int part) { return h * N(part) / N(kParts); };
-  N last = argument[0], rise = slope_of(N(0));
+  N last = argument[0], rise = slope_of(N(0)), least = abs(last);
   for (int i = 1; i <= kParts; ++i) {
     const N here = u(end_of(i)), now = here - last;
     if ((last < N(0)) != (here < N(0))) {
@@ -137,15 +148,17 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
                  end_of(i - 1), end_of(i));
     rise = slope;
     last = here;
+    least = std::min(least, N(abs(here)));
     if (i < kParts) ask(end_of(i));
   }
+  return reaches(argument, degree, length, function.function && least < N(1) ? N(1) : least);
 }
 
 template bool hides_nothing(const Hiding&, const double*, std::size_t, int, const double&);
-template void add_hidden_points(const Hiding&, const double*, const double*, int, const double&, std::vector<double>&);
-template void add_hidden_points(const Hiding&, const long double*, const long double*, int, const long double&,
+template bool add_hidden_points(const Hiding&, const double*, const double*, int, const double&, std::vector<double>&);
+template bool add_hidden_points(const Hiding&, const long double*, const long double*, int, const long double&,
                                 std::vector<long double>&);
-template void add_hidden_points(const Hiding&, const Quad*, const Quad*, int, const Quad&, std::vector<Quad>&);
-template void add_hidden_points(const Hiding&, const Multi*, const Multi*, int, const Multi&, std::vector<Multi>&);
+template bool add_hidden_points(const Hiding&, const Quad*, const Quad*, int, const Quad&, std::vector<Quad>&);
+template bool add_hidden_points(const Hiding&, const Multi*, const Multi*, int, const Multi&, std::vector<Multi>&);
 
 }  // namespace anholon
