@@ -186,15 +186,15 @@ double KernelExpansion::coefficient(std::size_t j, int k) const {
   return own && k <= plan.stages + plan.d[*own] ? kernel_->coefficient(*own, k, lane_) : 0;
 }
 
-bool KernelExpansion::add_hidden_points(double h, std::vector<double>& points) const {
+bool KernelExpansion::add_hidden_points(std::uint32_t end, double h, std::vector<double>& points) const {
   const Plan& plan = kernel_->plan().plan();
   if (plan.hiding.empty()) return true;
   kernel_->show_last();
   std::vector<double> argument, value;
   bool reach = true;
   for (const Plan::HidingSeries& slot : plan.hiding) {
-    if (hides_nothing(slot.function, kernel_->whole_series(slot.argument, lane_),
-                      static_cast<std::size_t>(kernel_->lanes()), order_ - 1, h))
+    if (slot.slot >= end || hides_nothing(slot.function, kernel_->whole_series(slot.argument, lane_),
+                                          static_cast<std::size_t>(kernel_->lanes()), order_ - 1, h))
       continue;
     argument.resize(static_cast<std::size_t>(order_)), value.resize(argument.size());
     for (int k = 0; k < order_; ++k) {

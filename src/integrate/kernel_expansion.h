@@ -92,9 +92,9 @@ class KernelExpansion {
   // Like state_at(), but in the kernel's own unknowns. `leading`: the leading derivatives in the unknowns of the
   // motion.
   void own_state_at(const W& h, std::vector<W>& own, std::vector<W>& leading) const;
-  // Adds the points within the step where a function may do something that its series do not show. Returns false if the
-  // series of its argument do not reach over the step.
-  bool add_hidden_points(double h, std::vector<double>& points) const;
+  // Adds the points within the step where a function of a slot below `end` may do something that its series do not show.
+  // Returns false if the series of its argument do not reach over the step.
+  bool add_hidden_points(std::uint32_t end, double h, std::vector<double>& points) const;
 
   // Sends the kernel to h beyond the expansion, which is at time t.
   void send(double h, double t);

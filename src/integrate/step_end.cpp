@@ -112,21 +112,21 @@ N StepEnd<N>::defect(PresentStep<N>& step, const W& h) {
 // Finds the points within a step over h where a function may do something that its series do not show.
 template <Number N>
 void StepEnd<N>::find_hidden(PresentStep<N>& step, const W& h) {
-  hidden_.clear();
+  hidden_.points.clear();
+  hidden_.known = true;
   const N length = convert<N>(h);
-  reach_ = true;
   if (const KernelExpansion* kernel = step.expander.kernel()) {
     std::vector<double> points;
-    reach_ = kernel->add_hidden_points(to_double(length), points);
-    for (const double x : points) hidden_.push_back(N(x));
+    hidden_.known = kernel->add_hidden_points(slots_, to_double(length), points);
+    for (const double x : points) hidden_.points.push_back(N(x));
   } else {
     const Machine<N>& machine = step.series().machine();
     for (const auto& [slot, hides] : hiding_)
       if (!add_hidden_points(hides.function, machine.series(hides.argument), machine.series(slot), order_ - 1, length,
-                             hidden_))
-        reach_ = false;
+                             hidden_.points))
+        hidden_.known = false;
   }
-  std::sort(hidden_.begin(), hidden_.end(), [](const N& a, const N& b) { return abs(a) < abs(b); });
+  std::sort(hidden_.points.begin(), hidden_.points.end(), [](const N& a, const N& b) { return abs(a) < abs(b); });
 }
 
 // True if the equations hold at h beyond the expansion, and what is watched has the values of its series there.
@@ -134,8 +134,8 @@ template <Number N>
 bool StepEnd<N>::may_end_at(PresentStep<N>& step, const EventWatch<N>& events, const W& h) {
   const N length = convert<N>(h);
   find_hidden(step, h);
-  check_.begin(length, hidden_);
-  if (!reach_ && check_.refuse() == EndCheck<N>::Next::shorten) return false;
+  check_.begin(length, hidden_.points);
+  if (!hidden_.known && check_.refuse() == EndCheck<N>::Next::shorten) return false;
   for (;;) {
     const bool decides = check_.decides();
     const N where = check_.where();
@@ -170,7 +170,8 @@ bool StepEnd<N>::shows_events(PresentStep<N>& step, const EventWatch<N>& events,
     return as_foretold(step, events, convert<N>(where));
   };
   find_hidden(step, h);
-  return std::all_of(hidden_.begin(), hidden_.end(), [&](const N& where) { return shows(convert<W>(where)); }) &&
+  return std::all_of(hidden_.points.begin(), hidden_.points.end(),
+                     [&](const N& where) { return shows(convert<W>(where)); }) &&
          shows(h);
 }
 
@@ -404,7 +405,7 @@ void StepEnd<N>::aim(PresentStep<N>& step, const W& t, bool arrives) {
     return;
   }
   find_hidden(step, looked_);
-  check_.begin(convert<N>(looked_), hidden_);
+  check_.begin(convert<N>(looked_), hidden_.points);
   send(*kernel, step.t(), convert<W>(check_.where()));
 }
 
@@ -433,7 +434,9 @@ LookAtEnd StepEnd<N>::look(KernelExpansion& kernel, const W& t, const N& horizon
   if (velocities_jump(kernel, t, horizon)) return LookAtEnd::by_reference;
   const W h = aimed_ - t;
   const N length = convert<N>(looked_);
-  switch (looked_ == W(0) ? EndCheck<N>::Next::good : reach_ ? check_.seen(N(kernel.defect())) : check_.refuse()) {
+  switch (looked_ == W(0) ? EndCheck<N>::Next::good
+          : hidden_.known ? check_.seen(N(kernel.defect()))
+                          : check_.refuse()) {
   case EndCheck<N>::Next::good:
     if (check_.loses_digits()) return LookAtEnd::by_reference;
     if (sent_ == h) return LookAtEnd::good;

@@ -96,13 +96,18 @@ class StepEnd {
   };
   // The numbers of consecutive steps of some kinds.
   struct InARow {
-    int short_kinks = 0;  // steps that were cut by a kink shortly after their start
-    int met_again = 0;    // steps that were cut by a kink at their start or shortly after it
+    int short_kinks = 0;        // steps that were cut by a kink shortly after their start
+    int met_again = 0;          // steps that were cut by a kink at their start or shortly after it
     W past{0}, past_before{0};  // how far the last step and the one before went past their kinks; 0 without a kink
   };
-  struct Hidden {
+  struct Hiding {
     std::uint32_t slot;
     HidingSlot hides;
+  };
+  // The points within a step to be looked at. known: the arguments of the functions have series that reach over the step.
+  struct Hidden {
+    std::vector<N> points;
+    bool known = true;
   };
   W length_past(PresentStep<N>& step, const W& where, const W& past, bool forward);
   // Returns where a step ends that meets the kink; `past`: the distance that surely leads past a kink.
@@ -130,9 +135,8 @@ class StepEnd {
   EndCheck<N> check_;
   std::uint32_t slots_ = 0;
   Others others_;
-  std::vector<Hidden> hiding_;  // slots whose function may do what its series do not show
-  std::vector<N> hidden_;       // points within the step to be looked at
-  bool reach_ = true;           // the arguments of these functions have series that reach over the step
+  std::vector<Hiding> hiding_;  // slots whose function may do what its series do not show
+  Hidden hidden_;
   std::vector<N> residual_, change_;
   W aimed_{0};            // the end of the step
   bool arrives_ = false;  // the step ends where the caller has set the end

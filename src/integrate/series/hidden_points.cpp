@@ -120,7 +120,7 @@ bool add_hidden_points(const Hiding& function, const N* argument, const N* value
     }
   };
   const auto end_of = [&](int part) { return h * N(part) / N(kParts); };
-  N last = argument[0], rise = slope_of(N(0)), least = abs(last);
+  N last = argument[0], rise = slope_of(N(0)), least = abs(last), most = abs(last);
   for (int i = 1; i <= kParts; ++i) {
     const N here = u(end_of(i)), now = here - last;
     if ((last < N(0)) != (here < N(0))) {
@@ -149,9 +149,13 @@ bool add_hidden_points(const Hiding& function, const N* argument, const N* value
     rise = slope;
     last = here;
     least = std::min(least, N(abs(here)));
+    most = std::max(most, N(abs(here)));
     if (i < kParts) ask(end_of(i));
   }
-  return reaches(argument, degree, length, function.function && least < N(1) ? N(1) : least);
+  return !function.needs_reach || reaches(argument, degree, length,
+                                          !function.function ? most
+                                          : least < N(1)     ? N(1)
+                                                             : least);
 }
 
 template bool hides_nothing(const Hiding&, const double*, std::size_t, int, const double&);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/plan/plan.h"
@@ -42,9 +43,9 @@ std::optional<HidingSlot> quotient_by(const Tape& tape, std::uint32_t divisor, d
   return HidingSlot{{std::nullopt, exponent * by.exponent, true}, by.base};
 }
 
-}  // namespace
+bool hides(const Instruction& in) { return in.op == Op::function && info(static_cast<Function>(in.index)).hides; }
 
-std::optional<HidingSlot> may_hide(const Tape& tape, std::uint32_t slot) {
+std::optional<HidingSlot> hiding_at(const Tape& tape, std::uint32_t slot) {
   const Instruction& in = tape.code[slot];
   if (in.constant) return std::nullopt;
   if (in.op == Op::divide) return quotient_by(tape, in.b, 1);
@@ -55,9 +56,18 @@ std::optional<HidingSlot> may_hide(const Tape& tape, std::uint32_t slot) {
     if (exponent < 0) return quotient_by(tape, in.a, -exponent);
     return exponent < kSteep ? std::nullopt : std::optional(HidingSlot{{std::nullopt, exponent}, in.a});
   }
-  if (in.op != Op::function) return std::nullopt;
-  const Function f = static_cast<Function>(in.index);
-  return info(f).hides ? std::optional(HidingSlot{{f}, in.a}) : std::nullopt;
+  return hides(in) ? std::optional(HidingSlot{{static_cast<Function>(in.index)}, in.a}) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<HidingSlot> may_hide(const Tape& tape, std::uint32_t slot) {
+  std::optional<HidingSlot> found = hiding_at(tape, slot);
+  if (!found) return found;
+  const std::vector<std::uint32_t> made_of = precedents(tape, {found->argument});
+  found->function.needs_reach =
+      std::none_of(made_of.begin(), made_of.end(), [&](std::uint32_t s) { return hides(tape.code[s]); });
+  return found;
 }
 
 }  // namespace anholon

@@ -106,6 +106,9 @@ struct Hiding {
   std::optional<Function> function;  // nullopt: a power, or a quotient
   double exponent = 0;               // of the power; of a quotient: the power of the argument by which it divides
   bool quotient = false;
+  // True if the series of the argument have to reach over a step. An argument made of such functions may vary where its
+  // series do not show it; each of these functions is looked at itself.
+  bool needs_reach = true;
 
   // A function hides nothing if its argument changes by less than this; for powers and quotients, relative to the
   // argument.
@@ -151,6 +154,7 @@ struct Plan {
   };
   std::vector<Deciding> deciding;
   struct HidingSeries {
+    std::uint32_t slot;  // of the tape
     Hiding function;
     Place argument, value;
   };

@@ -32,7 +32,7 @@ void note_watched(const Slots& slots, const PlanLayout& layout, Plan& plan) {
   }
   for (std::uint32_t s = 0; s < tape.code.size(); ++s)
     if (const auto hides = slots.varies(s) ? may_hide(tape, s) : std::nullopt)
-      plan.hiding.push_back({hides->function, layout.place(hides->argument), layout.place(s)});
+      plan.hiding.push_back({s, hides->function, layout.place(hides->argument), layout.place(s)});
 }
 
 }  // namespace
