@@ -10,6 +10,7 @@
 #include "contact/law/consistent_modes.h"
 #include "contact/law/impact.h"
 #include "contact/law/impact_states.h"
+#include "contact/law/shared_forces.h"
 #include "contact/mode_segments.h"
 #include "contact/refused_options.h"
 #include "contact/slip_start.h"
@@ -117,6 +118,16 @@ class HybridMotion {
     }
   }
 
+  // A gap that the other contacts keep closed at rest neither opens nor closes but by round-off.
+  void note_still(const ContactProblem& p) {
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      const std::vector<long double>& n = p.contacts[c].normal;
+      bool rests = bodies_.modes[c].touch == Touch::open && bodies_.near.closed(c) && !bodies_.contacts[c].under;
+      for (std::size_t a = 0; rests && a < n.size(); ++a) rests = n[a] == 0 || bodies_.at.qd[a] == 0;
+      bodies_.modes[c].still = rests && others_keep_gap(p, bodies_.modes, c);
+    }
+  }
+
   // A slip that passes zero and goes on has reversed.
   void name_reversals(const ContactModes& modes) {
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
@@ -182,6 +193,7 @@ class HybridMotion {
     bodies_.stop(bodies_.modes);
     bodies_.drop_left_over();
     bodies_.bound_rest();
+    note_still(p);
     // The check is made again, because coordinates that are round-off were set to zero.
     return faults_.not_regular();
   }
@@ -191,7 +203,9 @@ class HybridMotion {
     const auto find = [&] {
       p = bodies_.with_touching();
       slips_->guess_directions(p);
-      return consistent_modes(p);
+      std::vector<ContactSolution> found = consistent_modes(p);
+      slips_->keep_sharing(found);
+      return found;
     };
     std::vector<ContactSolution> list = find();
     const bool any = std::any_of(bodies_.earlier.begin(), bodies_.earlier.end(),
