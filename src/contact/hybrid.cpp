@@ -203,9 +203,7 @@ class HybridMotion {
     const auto find = [&] {
       p = bodies_.with_touching();
       slips_->guess_directions(p);
-      std::vector<ContactSolution> found = consistent_modes(p);
-      slips_->keep_sharing(found);
-      return found;
+      return slips_->modes(p);
     };
     std::vector<ContactSolution> list = find();
     const bool any = std::any_of(bodies_.earlier.begin(), bodies_.earlier.end(),

@@ -12,6 +12,8 @@ namespace anholon {
 
 // A slip velocity with two components begins at this part of the velocities, because at zero it has no direction.
 static constexpr long double kSeed = 1e-10L;
+// Contacts that share friction stick if all cones have more than this part of the bounds to spare.
+static constexpr long double kSpared = 1e-12L;
 
 // The part of the forces by which the friction of a contact that sticks is above its bound at a state; nullopt if the
 // equations are singular there.
@@ -189,11 +191,24 @@ std::optional<ContactSolution> SlipStart::goes_on(const std::vector<ContactSolut
   return std::nullopt;
 }
 
+std::optional<ContactSolution> SlipStart::in_present_modes(const ContactProblem& p) const {
+  ContactModes modes(p.contacts.size());
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    modes[c].touch = bodies_.modes[c].touch, modes[c].direction = rows.direction;
+    if (modes[c].touch == Touch::open) continue;
+    if (!p.contacts[rows.under.value_or(c)].may_touch) return std::nullopt;
+    if (rows.rough && rows.moves != (modes[c].touch == Touch::slips)) return std::nullopt;
+  }
+  return consistent_in(p, modes);
+}
+
 bool SlipStart::stand_without_what_leaves() const {
   const ContactProblem p = bodies_.with_touching();
   const std::vector<ContactSolution> list = consistent_modes(p);
   const auto free = of_modes(p, ContactModes(p.contacts.size()));
-  if (list.size() != 1 || !free) return false;
+  const auto pressed = [](const ContactMode& m) { return m.shares[0].given != 0 || m.shares[1].given != 0; };
+  if (list.size() != 1 || !free || std::any_of(bodies_.modes.begin(), bodies_.modes.end(), pressed)) return false;
   for (std::size_t c = 0; c < p.contacts.size(); ++c) {
     const ContactRows& rows = p.contacts[c];
     if (bodies_.modes[c].touch == Touch::open) continue;
@@ -207,19 +222,22 @@ bool SlipStart::stand_without_what_leaves() const {
   return true;
 }
 
-void SlipStart::keep_sharing(std::vector<ContactSolution>& list) const {
-  if (!shared_anew_ || list.size() < 2) return;
+std::vector<ContactSolution> SlipStart::modes(const ContactProblem& p) const {
+  if (!shared_anew_) return consistent_modes(p);
+  if (auto now = in_present_modes(p); now && now->spare.value_or(0) > kSpared) return {std::move(*now)};
+  std::vector<ContactSolution> list = consistent_modes(p);
   if (auto now = goes_on(list)) list = {std::move(*now)};
+  return list;
 }
 
 bool SlipStart::finds_reserve() {
-  constexpr long double kSpared = 1e-12L;
   const std::vector<TouchingBodies::Excluded> excluded = bodies_.excluded, earlier = bodies_.earlier;
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
     if (bodies_.modes[c].touch != Touch::open) bodies_.excluded[c].touch = bodies_.earlier[c].touch = false;
   ContactProblem p = bodies_.with_touching();
   for (ContactRows& rows : p.contacts) rows.may_stick = true;
-  const auto now = goes_on(consistent_modes(p));
+  auto now = in_present_modes(p);
+  if (!now || !(now->spare.value_or(0) > kSpared)) now = goes_on(consistent_modes(p));
   bool holds = now && now->spare.value_or(0) > kSpared;
   // A contact that leaves has to be pressed again.
   for (std::size_t c = 0; holds && c < bodies_.contacts.size(); ++c)

@@ -32,9 +32,9 @@ class SlipStart {
   // for the time h of time_to_grow; the error is of the order of h^3 (theory: contact). Returns false if the motion
   // ends meanwhile.
   bool hold(Outcome& outcome);
-  // If the last segment has ended only because contacts share their forces anew, the bodies go on as before, even if
-  // they could do something else as well: leaves the solution with the present modes in the list alone.
-  void keep_sharing(std::vector<ContactSolution>& list) const;
+  // Returns the consistent modes. If the last segment has ended only because contacts share their forces anew, the
+  // bodies go on as before, even if they could do something else as well, and these are the present modes alone.
+  std::vector<ContactSolution> modes(const ContactProblem& problem) const;
   // Among contacts that shared friction, reports those that slip together with the one at which the last segment ended.
   // A contact that still sticks, because it only touched its limit or the others hold it, has not slipped, and its
   // event is removed.
@@ -69,9 +69,12 @@ class SlipStart {
   // not an event; otherwise they are held until the accelerations decide which begin to slip. Returns false if the
   // motion ends meanwhile.
   bool share_anew(Outcome& outcome);
+  // Returns the solution of the present modes, if they are consistent.
+  std::optional<ContactSolution> in_present_modes(const ContactProblem& problem) const;
   // Returns the solution in which each contact touches and sticks as it does now, or in which open ones touch besides.
   std::optional<ContactSolution> goes_on(const std::vector<ContactSolution>& list) const;
-  // True if the bodies stay at rest, for the moment, without the contacts that leave at the end of the last segment.
+  // True if the bodies stay at rest, for the moment, without the contacts that leave at the end of the last segment, and
+  // friction has not pressed contacts before.
   bool stand_without_what_leaves() const;
   // True if a contact has come to its limit and an open contact with a closed gap holds the bodies with it.
   bool closed_contact_may_hold();

@@ -399,4 +399,8 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
   return all.empty() ? tried_together(p) : solutions.list();
 }
 
+std::optional<ContactSolution> consistent_in(const ContactProblem& p, const ContactModes& modes) {
+  return Solutions(p).judge(modes);
+}
+
 }  // namespace anholon
