@@ -167,8 +167,8 @@ class HybridMotion {
     bodies_.modes = list[0].modes;
     if (over_border)
       tell_changes(before);
-    else if (struck)
-      tell_openings(before);
+    else
+      tell_openings(before, struck ? 0 : slips_->held_for());
     if (Outcome o = faults_.lies_flat(false); !o.ok()) return o;
     note_rests(p, list[0]);
     name_reversals(bodies_.modes);
@@ -265,20 +265,22 @@ class HybridMotion {
                bodies_.contacts[c].slip.size() == 1)
         change = ModeChange::reverses;
       if (change == ModeChange::leaves)
-        tell_leaves(c);
+        tell_leaves(c, bodies_.at.t.get_d());
       else if (change)
         joined_.event_once(event_name(c, *change), bodies_.at.t.get_d());
     }
   }
-  // Reports the closed contacts that impacts of others have opened.
-  void tell_openings(const ContactModes& before) {
-    for (std::size_t c = 0; c < before.size(); ++c)
-      if (before[c].touch != Touch::open && bodies_.modes[c].touch == Touch::open && !bodies_.contacts[c].under)
-        tell_leaves(c);
+  // Reports the closed contacts that impacts of others have opened, or forces that jump as a slip begins.
+  // `held`: for how long the contacts have been held before.
+  void tell_openings(const ContactModes& before, double held) {
+    for (std::size_t c = 0; c < before.size(); ++c) {
+      const bool told = bodies_.excluded[c].touch || bodies_.earlier[c].touch || bodies_.contacts[c].under;
+      if (before[c].touch != Touch::open && bodies_.modes[c].touch == Touch::open && !told)
+        tell_leaves(c, now() - held);
+    }
   }
   // If the contact itself has an impact, its event tells that the bodies part.
-  void tell_leaves(std::size_t c) {
-    const double t = bodies_.at.t.get_d();
+  void tell_leaves(std::size_t c, double t) {
     if (!joined_.has(event_name(c, ModeChange::hits), t)) joined_.event_once(event_name(c, ModeChange::leaves), t);
   }
 

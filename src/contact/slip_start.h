@@ -39,6 +39,8 @@ class SlipStart {
   // A contact that still sticks, because it only touched its limit or the others hold it, has not slipped, and its
   // event is removed.
   void tell_who_slips_too(const ContactModes& now);
+  // For how long contacts that share friction have been held before the present state.
+  double held_for() const { return static_cast<double>(together_); }
   // Sets first guesses of directions: against the friction that held.
   void guess_directions(ContactProblem& problem) const;
   // Gives slips with two components their initial velocities. `list`: the contacts whose slip begins. A single one that

@@ -141,6 +141,18 @@ TEST(StandingBody, GoesOnStandingIfItCouldSlipAsWell) {
           18.421349});
 }
 
+// At the limit the body begins to roll over one contact, and the other one leaves.
+TEST(StandingBody, RollsAtItsLimit) {
+  const std::vector<Point> points = {{0.21, -0.511, 0.9192082444960372, 0.21, 0.21},
+                                     {0.641, -0.707, -1.0266633271981693, 0.77, 0.77}};
+  const Load load{-0.572, 0.678, 0.262};
+  const auto m = contact_motion(body(points, load), Rational(176, 10));
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  ASSERT_EQ(m.report.events.size(), 1U);
+  EXPECT_EQ(m.report.events[0].name, "c1.leaves");
+  EXPECT_NEAR(m.report.events[0].t.value, limit(points, load), 1e-8);
+}
+
 // The body stands with forces far inside of the cones, but may also roll over one of its contacts.
 TEST(StandingBody, ThatMayAlsoRollIsUndecided) {
   const auto m = contact_motion(
