@@ -10,6 +10,7 @@
 #include "contact/law/consistent_modes.h"
 #include "contact/law/impact.h"
 #include "contact/law/impact_states.h"
+#include "contact/law/shared_forces.h"
 #include "contact/mode_segments.h"
 #include "contact/refused_options.h"
 #include "contact/slip_start.h"
@@ -117,6 +118,16 @@ class HybridMotion {
     }
   }
 
+  // A gap that the other contacts keep closed at rest neither opens nor closes but by round-off.
+  void note_still(const ContactProblem& p) {
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      const std::vector<long double>& n = p.contacts[c].normal;
+      bool rests = bodies_.modes[c].touch == Touch::open && bodies_.near.closed(c) && !bodies_.contacts[c].under;
+      for (std::size_t a = 0; rests && a < n.size(); ++a) rests = n[a] == 0 || bodies_.at.qd[a] == 0;
+      bodies_.modes[c].still = rests && others_keep_gap(p, bodies_.modes, c);
+    }
+  }
+
   // A slip that passes zero and goes on has reversed.
   void name_reversals(const ContactModes& modes) {
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
@@ -156,8 +167,8 @@ class HybridMotion {
     bodies_.modes = list[0].modes;
     if (over_border)
       tell_changes(before);
-    else if (struck)
-      tell_openings(before);
+    else
+      tell_openings(before, struck ? 0 : slips_->held_for());
     if (Outcome o = faults_.lies_flat(false); !o.ok()) return o;
     note_rests(p, list[0]);
     name_reversals(bodies_.modes);
@@ -182,6 +193,7 @@ class HybridMotion {
     bodies_.stop(bodies_.modes);
     bodies_.drop_left_over();
     bodies_.bound_rest();
+    note_still(p);
     // The check is made again, because coordinates that are round-off were set to zero.
     return faults_.not_regular();
   }
@@ -191,7 +203,7 @@ class HybridMotion {
     const auto find = [&] {
       p = bodies_.with_touching();
       slips_->guess_directions(p);
-      return consistent_modes(p);
+      return slips_->modes(p);
     };
     std::vector<ContactSolution> list = find();
     const bool any = std::any_of(bodies_.earlier.begin(), bodies_.earlier.end(),
@@ -253,20 +265,22 @@ class HybridMotion {
                bodies_.contacts[c].slip.size() == 1)
         change = ModeChange::reverses;
       if (change == ModeChange::leaves)
-        tell_leaves(c);
+        tell_leaves(c, bodies_.at.t.get_d());
       else if (change)
         joined_.event_once(event_name(c, *change), bodies_.at.t.get_d());
     }
   }
-  // Reports the closed contacts that impacts of others have opened.
-  void tell_openings(const ContactModes& before) {
-    for (std::size_t c = 0; c < before.size(); ++c)
-      if (before[c].touch != Touch::open && bodies_.modes[c].touch == Touch::open && !bodies_.contacts[c].under)
-        tell_leaves(c);
+  // Reports the closed contacts that impacts of others have opened, or forces that jump as a slip begins.
+  // `held`: for how long the contacts have been held before.
+  void tell_openings(const ContactModes& before, double held) {
+    for (std::size_t c = 0; c < before.size(); ++c) {
+      const bool told = bodies_.excluded[c].touch || bodies_.earlier[c].touch || bodies_.contacts[c].under;
+      if (before[c].touch != Touch::open && bodies_.modes[c].touch == Touch::open && !told)
+        tell_leaves(c, now() - held);
+    }
   }
   // If the contact itself has an impact, its event tells that the bodies part.
-  void tell_leaves(std::size_t c) {
-    const double t = bodies_.at.t.get_d();
+  void tell_leaves(std::size_t c, double t) {
     if (!joined_.has(event_name(c, ModeChange::hits), t)) joined_.event_once(event_name(c, ModeChange::leaves), t);
   }
 

@@ -12,6 +12,8 @@ namespace anholon {
 
 // A slip velocity with two components begins at this part of the velocities, because at zero it has no direction.
 static constexpr long double kSeed = 1e-10L;
+// Contacts that share friction stick if all cones have more than this part of the bounds to spare.
+static constexpr long double kSpared = 1e-12L;
 
 // The part of the forces by which the friction of a contact that sticks is above its bound at a state; nullopt if the
 // equations are singular there.
@@ -45,8 +47,10 @@ bool only_touches_bound(TouchingBodies& bodies, std::size_t contact, const Ahead
 bool SlipStart::hold(Outcome& outcome) {
   constexpr long double kTrial = 1e-6L;
   std::fill(held_.begin(), held_.end(), Held{});
+  shared_anew_ = false;
   if (shares_friction(bodies_.modes)) return share_anew(outcome);
   together_ = 0;
+  if (closed_contact_may_hold()) return true;
   std::size_t c = 0;
   while (c < bodies_.contacts.size() && !begins_at_rest(c)) ++c;
   if (c == bodies_.contacts.size()) return true;
@@ -174,31 +178,123 @@ long double SlipStart::time_to_reverse(const std::vector<long double>& accelerat
   return time;
 }
 
-bool SlipStart::share_anew(Outcome& outcome) {
-  constexpr long double kSpared = 1e-12L, kTrial = 1e-6L, kLonger = 4;
-  std::vector<std::size_t> limited;
+std::optional<ContactSolution> SlipStart::goes_on(const std::vector<ContactSolution>& list) const {
+  for (const bool closes : {false, true}) {
+    const auto as_now = [&](const ContactSolution& f) {
+      return std::equal(bodies_.modes.begin(), bodies_.modes.end(), f.modes.begin(),
+                        [&](const ContactMode& now, const ContactMode& then) {
+                          return now.touch == then.touch || (closes && now.touch == Touch::open);
+                        });
+    };
+    if (const auto at = std::find_if(list.begin(), list.end(), as_now); at != list.end()) return *at;
+  }
+  return std::nullopt;
+}
+
+std::optional<ContactSolution> SlipStart::in_present_modes(const ContactProblem& p) const {
+  ContactModes modes(p.contacts.size());
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    modes[c].touch = bodies_.modes[c].touch, modes[c].direction = rows.direction;
+    if (modes[c].touch == Touch::open) continue;
+    if (!p.contacts[rows.under.value_or(c)].may_touch) return std::nullopt;
+    if (rows.rough && rows.moves != (modes[c].touch == Touch::slips)) return std::nullopt;
+  }
+  return consistent_in(p, modes);
+}
+
+bool SlipStart::stand_without_what_leaves() const {
+  const ContactProblem p = bodies_.with_touching();
+  const std::vector<ContactSolution> list = consistent_modes(p);
+  const auto free = of_modes(p, ContactModes(p.contacts.size()));
+  const auto pressed = [](const ContactMode& m) { return m.shares[0].given != 0 || m.shares[1].given != 0; };
+  if (list.size() != 1 || !free || std::any_of(bodies_.modes.begin(), bodies_.modes.end(), pressed)) return false;
+  for (std::size_t c = 0; c < p.contacts.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    if (bodies_.modes[c].touch == Touch::open) continue;
+    if (!bodies_.excluded[c].touch) {
+      if (list[0].modes[c].touch != bodies_.modes[c].touch) return false;
+    } else if (std::abs(dot(rows.normal, list[0].x) + rows.normal_rate) >
+               kSame * (largest(rows.normal) * largest(free->x) + std::abs(rows.normal_rate))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::vector<ContactSolution> SlipStart::modes(const ContactProblem& p) const {
+  if (!shared_anew_) return consistent_modes(p);
+  if (auto now = in_present_modes(p); now && now->spare.value_or(0) > kSpared) return {std::move(*now)};
+  std::vector<ContactSolution> list = consistent_modes(p);
+  if (auto now = goes_on(list)) list = {std::move(*now)};
+  return list;
+}
+
+bool SlipStart::finds_reserve() {
+  const std::vector<TouchingBodies::Excluded> excluded = bodies_.excluded, earlier = bodies_.earlier;
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+    if (bodies_.modes[c].touch != Touch::open) bodies_.excluded[c].touch = bodies_.earlier[c].touch = false;
+  ContactProblem p = bodies_.with_touching();
+  for (ContactRows& rows : p.contacts) rows.may_stick = true;
+  auto now = in_present_modes(p);
+  if (!now || !(now->spare.value_or(0) > kSpared)) now = goes_on(consistent_modes(p));
+  bool holds = now && now->spare.value_or(0) > kSpared;
+  // A contact that leaves has to be pressed again.
+  for (std::size_t c = 0; holds && c < bodies_.contacts.size(); ++c)
+    holds =
+        !excluded[c].touch || bodies_.modes[c].touch == Touch::open || now->normal[c] > kSame * size_of_forces(p, *now);
+  if (!holds) {
+    bodies_.excluded = excluded, bodies_.earlier = earlier;
+    return false;
+  }
+  for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+    if (excluded[c].touch && bodies_.modes[c].touch != Touch::open)
+      joined_.take_back(bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::leaves));
+    if (!excluded[c].stick || bodies_.modes[c].touch != Touch::sticks) continue;
+    joined_.take_back(bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::slips));
+    bodies_.may_stick_again(c);
+    told_[c] = false;
+  }
+  return true;
+}
+
+bool SlipStart::closed_contact_may_hold() {
+  bool limited = false, closed = false;
+  for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+    limited = limited || (bodies_.excluded[c].stick && bodies_.modes[c].touch == Touch::sticks);
+    closed = closed || (bodies_.modes[c].touch == Touch::open && bodies_.near.closed(c));
+  }
+  if (!limited || !closed) return false;
+  bodies_.look();
+  return shared_anew_ = finds_reserve();
+}
+
+bool SlipStart::share_anew(Outcome& outcome) {
+  constexpr long double kTrial = 1e-6L, kLonger = 4;
+  std::vector<std::size_t> limited;
+  bool leaves = false;
+  for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
     if (bodies_.excluded[c].stick && bodies_.modes[c].touch == Touch::sticks) limited.push_back(c);
+    leaves = leaves || (bodies_.excluded[c].touch && bodies_.modes[c].touch != Touch::open);
+  }
   // The time is longer than before if the contacts have been held just now, and still stick.
   const bool just_now = bodies_.at.t.get_d() - held_until_ <= static_cast<double>(together_);
   const long double last = just_now ? together_ : 0;
   together_ = 0;
-  if (limited.empty()) return true;
+  if (limited.empty() && !leaves) return true;
   bodies_.look();
-  ContactProblem p = bodies_.with_touching();
-  for (ContactRows& rows : p.contacts) rows.may_stick = true;
-  const std::vector<ContactSolution> list = consistent_modes(p);
-  const bool sticks =
-      list.size() == 1 && std::equal(bodies_.modes.begin(), bodies_.modes.end(), list[0].modes.begin(),
-                                     [](const ContactMode& a, const ContactMode& b) { return a.touch == b.touch; });
-  if (sticks && list[0].spare.value_or(0) > kSpared) {
-    for (const std::size_t c : limited) {
-      joined_.take_back(bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::slips));
-      bodies_.may_stick_again(c);
-      told_[c] = false;
-    }
+  if (limited.empty() && stand_without_what_leaves()) return true;
+  if (finds_reserve()) {
+    shared_anew_ = true;
     return true;
   }
+  if (limited.empty()) return true;
+  ContactProblem p = bodies_.with_touching();
+  for (ContactRows& rows : p.contacts) rows.may_stick = true;
+  std::vector<ContactSolution> list = consistent_modes(p);
+  const auto now = goes_on(list);
+  const bool sticks = now.has_value();
+  if (sticks) list = {*now};
   const auto at_limit = [&](std::size_t c) {
     constexpr long double kAtLimit = 1 - 1e-6L;
     return bodies_.modes[c].touch == Touch::sticks && std::hypot(list[0].friction[c][0], list[0].friction[c][1]) >=

@@ -32,10 +32,15 @@ class SlipStart {
   // for the time h of time_to_grow; the error is of the order of h^3 (theory: contact). Returns false if the motion
   // ends meanwhile.
   bool hold(Outcome& outcome);
+  // Returns the consistent modes. If the last segment has ended only because contacts share their forces anew, the
+  // bodies go on as before, even if they could do something else as well, and these are the present modes alone.
+  std::vector<ContactSolution> modes(const ContactProblem& problem) const;
   // Among contacts that shared friction, reports those that slip together with the one at which the last segment ended.
   // A contact that still sticks, because it only touched its limit or the others hold it, has not slipped, and its
   // event is removed.
   void tell_who_slips_too(const ContactModes& now);
+  // For how long contacts that share friction have been held before the present state.
+  double held_for() const { return static_cast<double>(together_); }
   // Sets first guesses of directions: against the friction that held.
   void guess_directions(ContactProblem& problem) const;
   // Gives slips with two components their initial velocities. `list`: the contacts whose slip begins. A single one that
@@ -66,6 +71,18 @@ class SlipStart {
   // not an event; otherwise they are held until the accelerations decide which begin to slip. Returns false if the
   // motion ends meanwhile.
   bool share_anew(Outcome& outcome);
+  // Returns the solution of the present modes, if they are consistent.
+  std::optional<ContactSolution> in_present_modes(const ContactProblem& problem) const;
+  // Returns the solution in which each contact touches and sticks as it does now, or in which open ones touch besides.
+  std::optional<ContactSolution> goes_on(const std::vector<ContactSolution>& list) const;
+  // True if the bodies stay at rest, for the moment, without the contacts that leave at the end of the last segment, and
+  // friction has not pressed contacts before.
+  bool stand_without_what_leaves() const;
+  // True if a contact has come to its limit and an open contact with a closed gap holds the bodies with it.
+  bool closed_contact_may_hold();
+  // True if another distribution of the forces holds the contacts at which the last segment ended. Their events are
+  // removed then.
+  bool finds_reserve();
   // Holds all contacts that stick; returns false if the motion ends meanwhile.
   bool hold_together(long double time, Outcome& outcome);
   // Like hold(), for several contacts: those with two components are held until their slip has a velocity.
@@ -90,6 +107,7 @@ class SlipStart {
   std::vector<bool> told_;
   long double together_ = 0;  // for how long contacts that share friction were held last
   double held_until_ = 0;     // when that ended
+  bool shared_anew_ = false;  // after the last segment
   // The holding of a contact that begins to slip.
   struct Held {
     long double time = 0;

@@ -325,9 +325,8 @@ class MightStick {
   std::vector<std::size_t> groups_;
 };
 
-}  // namespace
-
-std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
+// Tries all sets of touching contacts together.
+std::vector<ContactSolution> tried_together(const ContactProblem& p) {
   std::vector<ContactModes> each;
   std::size_t count = 1;
   for (const ContactRows& rows : p.contacts) {
@@ -356,6 +355,52 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
       at->second = true, solutions.add(*f);
   }
   return solutions.list();
+}
+
+// The equations with the contacts of one group alone: all others are open, and their gaps do not count.
+ContactProblem of_group(const ContactProblem& p, const std::vector<std::size_t>& groups, std::size_t group) {
+  ContactProblem alone = p;
+  for (std::size_t c = 0; c < groups.size(); ++c) {
+    ContactRows& rows = alone.contacts[c];
+    if (groups[c] == group) continue;
+    rows.normal.assign(p.b.size(), 0), rows.normal_rate = 0, rows.pressed = 0;
+    rows.may_touch = false, rows.may_open = true;
+  }
+  return alone;
+}
+
+}  // namespace
+
+std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
+  const std::vector<std::size_t> groups = contact_groups(p);
+  std::set<std::size_t> touching;
+  for (std::size_t c = 0; c < groups.size(); ++c)
+    if (p.contacts[c].may_touch || p.contacts[c].pressed != 0) touching.insert(groups[c]);
+  if (touching.size() < 2) return tried_together(p);
+  // Each solution of a group goes with each one of the others.
+  std::vector<ContactModes> all = {ContactModes(groups.size())};
+  for (const std::size_t group : touching) {
+    const std::vector<ContactSolution> list = tried_together(of_group(p, groups, group));
+    std::vector<ContactModes> more;
+    for (const ContactModes& modes : all)
+      for (const ContactSolution& f : list) {
+        more.push_back(modes);
+        for (std::size_t c = 0; c < groups.size(); ++c)
+          if (groups[c] == group) more.back()[c] = f.modes[c];
+      }
+    all = std::move(more);
+  }
+  Solutions solutions(p);
+  for (const ContactModes& modes : all) {
+    const auto f = solutions.judge(modes);
+    if (!f) return tried_together(p);
+    solutions.add(*f);
+  }
+  return all.empty() ? tried_together(p) : solutions.list();
+}
+
+std::optional<ContactSolution> consistent_in(const ContactProblem& p, const ContactModes& modes) {
+  return Solutions(p).judge(modes);
 }
 
 }  // namespace anholon

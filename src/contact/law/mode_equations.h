@@ -46,6 +46,7 @@ struct ContactMode {
   long double slack = 0;  // forces below this are round-off
   long double depth = 0;  // a gap is negative below minus this depth
   bool closed = false;    // an open contact whose gap begins at zero; its value is the round-off of its terms
+  bool still = false;     // an open contact whose gap the others keep closed, at rest: its gap is no event
 };
 using ContactModes = std::vector<ContactMode>;
 

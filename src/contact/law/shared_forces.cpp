@@ -1,8 +1,6 @@
 #include "contact/law/shared_forces.h"
 
-#include <limits>
-
-#include "contact/law/positive_equations.h"
+#include "contact/law/cone_barrier.h"
 
 namespace anholon {
 
@@ -136,7 +134,13 @@ class Sharing {
     }
   }
 
-  const std::vector<HeldComponent>& held() const { return held_; }
+  // True if friction that is distributed in another way changes the load of this contact.
+  bool changes_load(const ContactProblem& p, std::size_t c) const {
+    return std::any_of(dependent_.begin(), dependent_.end(), [&](const Dependent& d) {
+      return std::abs(d.of_gaps[c]) > kSame && p.contacts[d.place.contact].static_friction > 0;
+    });
+  }
+
   const std::vector<Dependent>& dependent() const { return dependent_; }
 
  private:
@@ -151,10 +155,15 @@ std::vector<std::size_t> in_order(std::size_t count) {
   return order;
 }
 
-// The least spare part of a bound among contacts at rest; contacts without a bound and without friction do not count.
-Real spare_of(const ContactProblem& p, const ContactSolution& f, Real force) {
+// The least spare part of a bound among contacts at rest. Contacts without a bound and without friction do not count,
+// unless another distribution changes their loads. A load that pulls has a negative spare part.
+Real spare_of(const ContactProblem& p, const ContactSolution& f, const Sharing& sharing, Real force) {
   Real spare = 1;
   for (std::size_t c = 0; c < f.modes.size(); ++c) {
+    if (f.modes[c].touch == Touch::open) continue;
+    const bool changes = sharing.changes_load(p, p.contacts[c].under.value_or(c));
+    if (f.normal[c] < (changes ? kSame : -kSame) * force && !p.contacts[c].under)
+      spare = std::min(spare, f.normal[c] / force);
     if (f.modes[c].touch != Touch::sticks || !p.contacts[c].rough) continue;
     const Real most = bound(p, f, c), is = std::hypot(f.friction[c][0], f.friction[c][1]);
     if (most > kSame * force)
@@ -165,116 +174,127 @@ Real spare_of(const ContactProblem& p, const ContactSolution& f, Real force) {
   return spare;
 }
 
-// The distribution with the largest spare part: of all y and s with |T(y)| <= mu N(y) - s u for each contact, where u
-// is its earlier bound, the one with the largest s; by Newton's method with a barrier that becomes steeper.
-class MostSpared {
+// All distributions of friction: the dependent components y are free, and the other forces are linear functions of them,
+// because the motion stays the same, or because contacts that slip have friction in proportion to their loads.
+class Distributions {
  public:
-  MostSpared(const ContactProblem& p, const ContactSolution& f, const Sharing& sharing, Real force)
-      : size_(sharing.dependent().size() + 1), z_(size_, 0) {
-    Real s = 1;
-    for (std::size_t c = 0; c < f.modes.size(); ++c) {
-      const Real u = bound(p, f, c);
-      if (f.modes[c].touch != Touch::sticks || !p.contacts[c].rough || !(u > kSame * force)) continue;
-      Cone cone{u / force, Numbers(size_, 0), {f.friction[c][0] / force, f.friction[c][1] / force}, {}};
-      cone.q_z.fill(Numbers(size_, 0));
-      const std::size_t normal = p.contacts[c].under.value_or(c);
-      for (std::size_t d = 0; d + 1 < size_; ++d) {
-        const Dependent& row = sharing.dependent()[d];
-        cone.p_z[d] = -p.contacts[c].static_friction * row.of_gaps[normal];
-        if (row.place.contact == c) cone.q_z[row.place.component][d] += 1;
-        for (std::size_t k = 0; k < row.of_held.size(); ++k)
-          if (sharing.held()[k].contact == c) cone.q_z[sharing.held()[k].component][d] -= row.of_held[k];
-      }
-      cone.p_z[size_ - 1] = -u / force;
-      s = std::min(s, 1 - std::hypot(cone.q[0], cone.q[1]) / cone.p);
-      cones_.push_back(std::move(cone));
+  // `f`: the distribution y = 0, with the modes of `sharing`.
+  Distributions(const ContactProblem& p, const ContactSolution& f, const Sharing& sharing, Real force)
+      : p_(p), f_(f), force_(force) {
+    for (const Dependent& d : sharing.dependent()) {
+      if (!(p.contacts[d.place.contact].static_friction > 0)) continue;
+      ContactModes modes = f.modes;
+      modes[d.place.contact].shares[d.place.component].given = force;
+      if (auto by = of_modes(p, modes)) by_.push_back(std::move(*by));
     }
-    z_[size_ - 1] = s - 0.5L;
+    for (const Real N : f.normal) load_ = std::max(load_, std::abs(N) / force);
+    for (std::size_t c = 0; c < f.modes.size(); ++c) add_cone(c);
   }
 
-  // Returns the changes of the dependent components, in units of `force`, followed by s.
-  const Numbers& solve() {
-    constexpr Real kFirst = 1, kLast = 1e13L, kSteeper = 10;
-    constexpr int kMost = 30;
-    for (Real steep = kFirst; steep <= kLast; steep *= kSteeper)
-      for (int k = 0; k < kMost && step(steep); ++k) continue;
-    return z_;
+  // Returns the distribution with the largest spare part: of all y and s with |T(y)| <= mu N(y) - s u for each contact,
+  // the one with the largest s, where u is the bound at y = 0, or a part of the largest bound if y changes the load.
+  // Loads that are larger than necessary, as of a wedge, are reduced.
+  ContactModes most_spared() const {
+    constexpr Real kSteepest = 1e13L, kMargin = 0.5L, kMost = 2, kPressed = 4;
+    Numbers z(by_.size() + 1, 0), slope(by_.size() + 1, 0);
+    Real s = kMost;
+    for (const AffineCone& c : cones_) s = std::min(s, (c.p - std::hypot(c.q[0], c.q[1])) / -c.p_z.back());
+    z.back() = s - kMargin, slope.back() = -1;
+    std::vector<AffineCone> cones = cones_;
+    if (loads_change_) {
+      cones.push_back(linear(kMost, Numbers(z.size(), 0)));
+      cones.back().p_z.back() = -1;
+      cones.push_back(largest_sum());
+    }
+    minimize_within(cones, slope, kSteepest, z);
+    if (loads_change_ && sum_of_bounds(z) > kPressed * (sum_of_bounds(Numbers(z.size(), 0)) + 1)) press_less(z);
+    return given(z);
   }
 
  private:
-  // The cone |q + q_z z| <= p + p_z z.
-  struct Cone {
-    Real p;
-    Numbers p_z;
-    std::array<Real, 2> q;
-    std::array<Numbers, 2> q_z;
-  };
+  AffineCone linear(Real p, Numbers p_z) const {
+    AffineCone c{p, std::move(p_z), {}, {}};
+    c.q_z.fill(Numbers(by_.size() + 1, 0));
+    return c;
+  }
 
-  // -log of the product of all p^2 - |q|^2, plus -s times `steep`; infinite outside of a cone.
-  Real barrier(const Numbers& z, Real steep) const {
-    Real sum = -steep * z[size_ - 1];
-    for (const Cone& c : cones_) {
-      const Real p = c.p + dot(c.p_z, z), q0 = c.q[0] + dot(c.q_z[0], z), q1 = c.q[1] + dot(c.q_z[1], z);
-      const Real q = std::hypot(q0, q1);
-      if (!(p > q)) return std::numeric_limits<Real>::infinity();
-      sum -= std::log(p - q) + std::log(p + q);
+  // Adds the condition |T| <= mu N - s u, or N >= s u for a contact without friction that holds it.
+  void add_cone(std::size_t c) {
+    constexpr Real kLeast = 0.1L;
+    const ContactRows& rows = p_.contacts[c];
+    if (f_.modes[c].touch == Touch::open) return;
+    const bool holds = f_.modes[c].touch == Touch::sticks && rows.rough && rows.static_friction > 0;
+    if (!holds && rows.under) return;
+    const Real mu = holds ? rows.static_friction : 1;
+    AffineCone cone = linear(mu * f_.normal[c] / force_, Numbers(by_.size() + 1, 0));
+    bool moves = false, presses = false;
+    for (std::size_t d = 0; d < by_.size(); ++d) {
+      cone.p_z[d] = mu * (by_[d].normal[c] - f_.normal[c]) / force_;
+      presses = presses || std::abs(cone.p_z[d]) > kSame * mu;
+      for (std::size_t a = 0; holds && a < 2; ++a) {
+        cone.q_z[a][d] = (by_[d].friction[c][a] - f_.friction[c][a]) / force_;
+        moves = moves || std::abs(cone.q_z[a][d]) > kSame;
+      }
     }
+    if (holds) cone.q = {f_.friction[c][0] / force_, f_.friction[c][1] / force_};
+    if (!presses && (!holds || !(cone.p > kSame))) return;
+    cone.p_z.back() = -std::max(cone.p, presses ? kLeast * mu * load_ : 0);
+    loads_change_ = loads_change_ || presses;
+    cones_.push_back(std::move(cone));
+  }
+
+  Real sum_of_bounds(const Numbers& z) const {
+    Real sum = 0;
+    for (const AffineCone& c : cones_) sum += std::abs(c.height(z) - c.p_z.back() * z.back());
     return sum;
   }
-
-  // Makes one step of Newton's method with halving; returns false at the end of the iteration.
-  bool step(Real steep) {
-    constexpr Real kEnough = 1e-10L;
-    std::vector<Numbers> H(size_, Numbers(size_, 0));
-    Numbers g(size_, 0);
-    g[size_ - 1] = -steep;
-    for (const Cone& c : cones_) {
-      const Real p = c.p + dot(c.p_z, z_), q0 = c.q[0] + dot(c.q_z[0], z_), q1 = c.q[1] + dot(c.q_z[1], z_);
-      const Real q = std::hypot(q0, q1), h = (p - q) * (p + q);
-      Numbers slope(size_);
-      for (std::size_t i = 0; i < size_; ++i) slope[i] = 2 * (p * c.p_z[i] - q0 * c.q_z[0][i] - q1 * c.q_z[1][i]) / h;
-      for (std::size_t i = 0; i < size_; ++i) {
-        g[i] -= slope[i];
-        for (std::size_t j = 0; j < size_; ++j)
-          H[i][j] += slope[i] * slope[j] -
-                     2 * (c.p_z[i] * c.p_z[j] - c.q_z[0][i] * c.q_z[0][j] - c.q_z[1][i] * c.q_z[1][j]) / h;
-      }
+  // The condition that keeps the sum of the bounds finite.
+  AffineCone largest_sum() const {
+    constexpr Real kLargest = 1e6L;
+    AffineCone all = linear(kLargest * (sum_of_bounds(Numbers(by_.size() + 1, 0)) + 1), Numbers(by_.size() + 1, 0));
+    for (const AffineCone& c : cones_) {
+      all.p -= c.p;
+      for (std::size_t d = 0; d < by_.size(); ++d) all.p_z[d] -= c.p_z[d];
     }
-    const Numbers d = solve_positive(H, g);
-    const Real decrement = dot(g, d);
-    if (!(decrement > kEnough)) return false;
-    const Real before = barrier(z_, steep);
-    constexpr int kHalves = 60;
-    Real part = 1;
-    for (int k = 0; k < kHalves; ++k, part /= 2) {
-      Numbers next = z_;
-      for (std::size_t i = 0; i < size_; ++i) next[i] -= part * d[i];
-      if (barrier(next, steep) < before) {
-        z_ = std::move(next);
-        return true;
-      }
-    }
-    return false;
+    return all;
   }
 
-  std::size_t size_;
-  std::vector<Cone> cones_;
-  Numbers z_;
+  // Makes the sum of the bounds the least with which half of the spare part is left.
+  void press_less(Numbers& z) const {
+    constexpr Real kSteepest = 1e6L, kHalf = 0.5L;
+    if (!(z.back() > 0)) return;
+    const Real s = std::min(kHalf * z.back(), kHalf);
+    std::vector<AffineCone> cones = cones_;
+    Numbers slope(z.size() - 1, 0), y = z;
+    y.pop_back();
+    for (AffineCone& c : cones) {
+      for (std::size_t d = 0; d < y.size(); ++d) slope[d] += c.p_z[d];
+      c.p += s * c.p_z.back();
+      c.p_z.pop_back(), c.q_z[0].pop_back(), c.q_z[1].pop_back();
+    }
+    minimize_within(cones, slope, kSteepest, y);
+    std::copy(y.begin(), y.end(), z.begin());
+  }
+
+  // Makes the friction of a distribution given, and leaves the shares for later changes.
+  ContactModes given(const Numbers& z) const {
+    ContactModes modes = f_.modes;
+    for (std::size_t c = 0; c < modes.size(); ++c)
+      for (std::size_t a = 0; a < 2; ++a) {
+        Real T = f_.friction[c][a];
+        for (std::size_t d = 0; d < by_.size(); ++d) T += z[d] * (by_[d].friction[c][a] - f_.friction[c][a]);
+        modes[c].shares[a].given = T;
+      }
+    return modes;
+  }
+
+  const ContactProblem& p_;
+  const ContactSolution& f_;
+  Real force_, load_ = 0;
+  std::vector<ContactSolution> by_;  // the forces if one of the components is 1, in units of `force`
+  std::vector<AffineCone> cones_;    // their last number is s
+  bool loads_change_ = false;
 };
-
-// Makes the present forces of the contacts given ones, and leaves the shares for later changes.
-void give(const ContactSolution& f, const Sharing& sharing, const Numbers& y, Real force, ContactModes& modes) {
-  for (std::size_t c = 0; c < modes.size(); ++c)
-    for (std::size_t a = 0; a < 2; ++a) modes[c].shares[a].given = f.friction[c][a];
-  for (std::size_t d = 0; d < sharing.dependent().size(); ++d) {
-    const Dependent& row = sharing.dependent()[d];
-    modes[row.place.contact].shares[row.place.component].given += force * y[d];
-    for (std::size_t k = 0; k < row.of_held.size(); ++k) {
-      const HeldComponent& h = sharing.held()[k];
-      modes[h.contact].shares[h.component].given -= force * y[d] * row.of_held[k];
-    }
-  }
-}
 
 }  // namespace
 
@@ -282,6 +302,20 @@ void share_forces(const ContactProblem& p, ContactModes& modes) {
   const auto touches = [](const ContactMode& m) { return m.touch != Touch::open; };
   if (std::none_of(modes.begin(), modes.end(), touches)) return;
   Sharing(p, modes, in_order(modes.size())).weigh(Numbers(modes.size(), 1));
+}
+
+bool others_keep_gap(const ContactProblem& p, const ContactModes& modes, std::size_t contact) {
+  std::size_t most = p.beta.size();
+  for (const ContactRows& rows : p.contacts) most += 1 + rows.tangential.size();
+  GramSchmidt kept(most);
+  for (const Numbers& r : p.Phi) kept.add(r);
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    if (modes[c].touch == Touch::open) continue;
+    if (!p.contacts[c].under) kept.add(p.contacts[c].normal);
+    for (const Numbers& t : p.contacts[c].tangential)
+      if (modes[c].touch == Touch::sticks) kept.add(t);
+  }
+  return largest(p.contacts[contact].normal) > 0 && kept.left_of(p.contacts[contact].normal) <= kSame;
 }
 
 long double load_without_effect(const ContactProblem& p, const std::vector<std::size_t>& contacts,
@@ -322,13 +356,10 @@ std::optional<ContactSolution> distributed(const ContactProblem& p, const Contac
     f = of_modes(p, modes);
   }
   if (!f) return f;
-  f->spare = spare_of(p, *f, force);
+  f->spare = spare_of(p, *f, sharing, force);
   if (*f->spare > kSpared) return f;
-  MostSpared most(p, *f, sharing, force);
-  const Numbers& y = most.solve();
-  give(*f, sharing, y, force, modes);
-  f = of_modes(p, modes);
-  if (f) f->spare = spare_of(p, *f, force);
+  f = of_modes(p, Distributions(p, *f, sharing, force).most_spared());
+  if (f) f->spare = spare_of(p, *f, sharing, force);
   return f;
 }
 

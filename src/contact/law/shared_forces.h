@@ -15,6 +15,9 @@ namespace anholon {
 // gives each its share of the holding forces: to gaps the least loads, to friction its share by equal creep.
 void share_forces(const ContactProblem& problem, ContactModes& modes);
 
+// True if the constraints, the closed gaps and the contacts that stick keep the gap of an open contact.
+bool others_keep_gap(const ContactProblem& problem, const ContactModes& modes, std::size_t contact);
+
 // The size of the part of these contacts' loads that has no effect along their gaps; it is zero for the least loads.
 long double load_without_effect(const ContactProblem& problem, const std::vector<std::size_t>& contacts,
                                 const ContactSolution& solution);

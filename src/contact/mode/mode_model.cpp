@@ -77,7 +77,7 @@ class ModeBuilder {
         friction = mode.touch == Touch::sticks ? stick(c, mode, normal) : slip(c, mode, normal);
     } else if (mode.touch == Touch::open) {
       // A gap that is zero at the start does not pass zero if it closes again at once.
-      ends(c, ModeChange::hits, c.gap, -1, number(ModeNumber::depth));
+      if (!mode.still) ends(c, ModeChange::hits, c.gap, -1, number(ModeNumber::depth));
     } else {
       normal = mode.load.shared ? shared_load(mode) : keep(c.name + ".gap", c.name + ".n", c.gap, 0);
       if (!mode.load.shared) loads_.push_back(normal);
@@ -407,9 +407,9 @@ std::vector<int> mode_shape(const std::vector<Contact>& contacts, const ContactM
     const ContactMode& m = modes[c];
     const bool backwards = contacts[c].slip.size() == 1 && m.touch == Touch::slips && m.direction[0] < 0;
     const bool sticks = m.touch == Touch::sticks;
-    shape.insert(shape.end(),
-                 {static_cast<int>(m.touch), m.touch != Touch::open && m.load.shared, sticks && m.shares[0].shared,
-                  sticks && m.shares[1].shared, m.held, m.begins, m.at_bound, m.fast.has_value(), backwards, m.rests});
+    shape.insert(shape.end(), {static_cast<int>(m.touch), m.touch != Touch::open && m.load.shared,
+                               sticks && m.shares[0].shared, sticks && m.shares[1].shared, m.held, m.begins, m.at_bound,
+                               m.fast.has_value(), backwards, m.rests, m.still});
   }
   return shape;
 }
