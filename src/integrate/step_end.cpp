@@ -307,7 +307,9 @@ Wider<N> StepEnd<N>::beyond(PresentStep<N>& step, const EventWatch<N>& events, c
 // True if the motion meets a kink so soon that it may stay there.
 template <Number N>
 bool StepEnd<N>::is_short(const W& where, const W& past) const {
-  const double times = std::clamp(kMostPart / std::exp(log_tolerance_), kLeastTimes, kMostTimes);
+  // At kinks of constraints, pass_turn() decides.
+  const double times =
+      turns_.last ? kLeastTimes : std::clamp(kMostPart / std::exp(log_tolerance_), kLeastTimes, kMostTimes);
   return !(abs(where) >
            std::max(W(past * W(kLeastTimes)), W(std::max(in_a_row_.past, in_a_row_.past_before) * W(times))));
 }
