@@ -17,11 +17,11 @@ import multiprocessing
 import os
 import sys
 
-os.environ.pop("HEYOKA_CACHE_DIR", None)
+import heyoka as hy
+import numpy as np
+from heyoka_worker import Worker
 
-import heyoka as hy  # noqa: E402
-import numpy as np  # noqa: E402
-from heyoka_worker import Worker  # noqa: E402
+hy.llvm_state.set_diskcache_enabled(False)
 
 TOLERANCE = 1e-12
 SPREAD = 0.25
