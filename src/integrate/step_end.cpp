@@ -54,7 +54,7 @@ void StepEnd<N>::set_slots(std::uint32_t end, std::vector<bool> others) {
   hiding_.clear();
   const Tape& tape = program_->tape;
   for (std::uint32_t s = 0; s < end; ++s)
-    if (const auto hides = may_hide(tape, s)) hiding_.push_back({s, *hides});
+    if (const auto hides = may_hide(tape, s)) hiding_.push_back(*hides);
 }
 
 template <Number N>
@@ -121,9 +121,9 @@ void StepEnd<N>::find_hidden(PresentStep<N>& step, const W& h) {
     for (const double x : points) hidden_.points.push_back(N(x));
   } else {
     const Machine<N>& machine = step.series().machine();
-    for (const auto& [slot, hides] : hiding_)
-      if (!add_hidden_points(hides.function, machine.series(hides.argument), machine.series(slot), order_ - 1, length,
-                             hidden_.points))
+    for (const HidingSlot& hides : hiding_)
+      if (!add_hidden_points(hides.function, machine.series(hides.argument), machine.series(hides.slot), order_ - 1,
+                             length, hidden_.points))
         hidden_.known = false;
   }
   std::sort(hidden_.points.begin(), hidden_.points.end(), [](const N& a, const N& b) { return abs(a) < abs(b); });

@@ -100,10 +100,6 @@ class StepEnd {
     int met_again = 0;          // steps that were cut by a kink at their start or shortly after it
     W past{0}, past_before{0};  // how far the last step and the one before went past their kinks; 0 without a kink
   };
-  struct Hiding {
-    std::uint32_t slot;
-    HidingSlot hides;
-  };
   // The points within a step to be looked at. known: the arguments of the functions have series that reach over the step.
   struct Hidden {
     std::vector<N> points;
@@ -135,7 +131,7 @@ class StepEnd {
   EndCheck<N> check_;
   std::uint32_t slots_ = 0;
   Others others_;
-  std::vector<Hiding> hiding_;  // slots whose function may do what its series do not show
+  std::vector<HidingSlot> hiding_;  // slots whose function may do what its series do not show
   Hidden hidden_;
   std::vector<N> residual_, change_;
   W aimed_{0};            // the end of the step

@@ -41,7 +41,10 @@ template <Number N, class Value>
 N extremum(Value u, N low, N high, bool up) {
   for (int k = 0; k < kHalvings; ++k) {
     const N third = (high - low) / N(3), a = low + third, b = high - third;
-    ((u(a) > u(b)) == up ? high : low) = (u(a) > u(b)) == up ? b : a;
+    if ((u(a) > u(b)) == up)
+      high = b;
+    else
+      low = a;
   }
   return (low + high) / N(2);
 }
@@ -87,7 +90,7 @@ bool add_hidden_points(const Hiding& function, const N* argument, const N* value
   N moves(0);
   for (int k = degree; k >= 1; --k) moves = (moves + abs(argument[k])) * length;
   const bool quotient = function.quotient;
-  const N near_zero(quotient ? function.near_zero() : 0);
+  const N near_zero(quotient ? function.near_zero : 0);
   const auto u = [&](const N& x) { return value_at(argument, degree, x); };
   // The slope along the step.
   const auto slope_of = [&](const N& x) {

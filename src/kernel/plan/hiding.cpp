@@ -37,10 +37,14 @@ PowerOf as_power(const Tape& tape, std::uint32_t slot) {
   return {slot, 1};
 }
 
-std::optional<HidingSlot> quotient_by(const Tape& tape, std::uint32_t divisor, double exponent) {
+// The quotient that a slot is by this power of a divisor.
+std::optional<HidingSlot> quotient(const Tape& tape, std::uint32_t slot, std::uint32_t divisor, double exponent) {
+  constexpr double kSmall = 1e-3;  // a divisor this small, relative to its value at the start
   if (tape.code[divisor].constant) return std::nullopt;
   const PowerOf by = as_power(tape, divisor);
-  return HidingSlot{{std::nullopt, exponent * by.exponent, true}, by.base};
+  HidingSlot found{slot, by.base, {std::nullopt, exponent * by.exponent, true}};
+  found.function.near_zero = std::pow(kSmall, 1 / found.function.exponent);
+  return found;
 }
 
 bool hides(const Instruction& in) { return in.op == Op::function && info(static_cast<Function>(in.index)).hides; }
@@ -48,15 +52,15 @@ bool hides(const Instruction& in) { return in.op == Op::function && info(static_
 std::optional<HidingSlot> hiding_at(const Tape& tape, std::uint32_t slot) {
   const Instruction& in = tape.code[slot];
   if (in.constant) return std::nullopt;
-  if (in.op == Op::divide) return quotient_by(tape, in.b, 1);
+  if (in.op == Op::divide) return quotient(tape, slot, in.b, 1);
   if (in.op == Op::power) {
     // A power this steep acts like a wall; lower powers are visible from afar.
     constexpr double kSteep = 6;
     const double exponent = tape.rationals[in.index].get_d();
-    if (exponent < 0) return quotient_by(tape, in.a, -exponent);
-    return exponent < kSteep ? std::nullopt : std::optional(HidingSlot{{std::nullopt, exponent}, in.a});
+    if (exponent < 0) return quotient(tape, slot, in.a, -exponent);
+    return exponent < kSteep ? std::nullopt : std::optional(HidingSlot{slot, in.a, {std::nullopt, exponent}});
   }
-  return hides(in) ? std::optional(HidingSlot{{static_cast<Function>(in.index)}, in.a}) : std::nullopt;
+  return hides(in) ? std::optional(HidingSlot{slot, in.a, {static_cast<Function>(in.index)}}) : std::nullopt;
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 //   - J is never formed: the linearized tape itself, one row for every slot that depends on the unknowns, is eliminated by a sparse
 //     LU (program/sparse_lu.h). For a chain that is the O(n) recursion of articulated bodies, found by the order of elimination.
 #pragma once
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -112,14 +111,14 @@ struct Hiding {
 
   // A function hides nothing if its argument changes by less than this; for powers and quotients, relative to the
   // argument.
-  double hides_beyond() const { return quotient ? 1 - near_zero() : 0.5; }
+  double hides_beyond() const { return quotient ? 1 - near_zero : 0.5; }
   // An argument this small, relative to its value at the start, makes a wall, a peak or a pole of a quotient.
-  double near_zero() const { return std::pow(1e-3, 1 / exponent); }
+  double near_zero = 0;
 };
 // A slot that may hide its variation, and the slot of its argument.
 struct HidingSlot {
+  std::uint32_t slot, argument;
   Hiding function;
-  std::uint32_t argument;
 };
 // Returns the function, power or quotient of a slot if it may hide its variation. The argument of a quotient is the
 // base of the power by which it divides.
