@@ -3,7 +3,7 @@
 #include <functional>
 #include <map>
 
-#include "ensemble/reduction.h"
+#include "ensemble/reduce/reductions.h"
 #include "simulation/simulate.h"
 
 namespace anholon {

@@ -6,13 +6,13 @@
 
 #include "setup/outputs/output_tape.h"
 #include "simulation/event_paces.h"
-#include "simulation/first_pull.h"
 #include "simulation/followed_value.h"
 #include "simulation/lost_value.h"
 #include "simulation/report_json.h"
 #include "simulation/run_end.h"
+#include "simulation/run_report.h"
 #include "simulation/run_rows.h"
-#include "simulation/trust.h"
+#include "simulation/told_polynomials.h"
 
 namespace anholon {
 
@@ -63,7 +63,7 @@ class Run {
         stages_(std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
         course_(s, step_settings(*s.model, o), method(o), quadratures(s, power_, o), stages_), shown_(course_),
         watch_(s, power_, o.conserved, motion().parameters()), angles_(s, doubles(motion().parameters())), judge_(s, o),
-        paces_(s.model->events), lost_(*s.model),
+        polynomials_(s, stages_, first_followed()), paces_(s.model->events), lost_(*s.model),
         rows_({s, o, stages_, course_, shown_, watch_, judge_, floors_, report_}, sink),
         end_({s, o, stages_, first_followed(), course_, rows_, report_}) {
     if (o.watches_floors) floors_.emplace(s, o.watches_carriers && !o.resume);
@@ -86,7 +86,9 @@ class Run {
       rows_.columns();
       follow();
     }
-    report();
+    if (defect_) report_.rigorous = defect_->report();
+    const std::vector<Expr> watched = watched_quadratures(s_, power_);
+    RunReport<N>({s_, o_, watched, course_, shown_, watch_, angles_, judge_, floors_, rows_, end_, report_}).fill();
     return report_;
   }
 
@@ -102,11 +104,6 @@ class Run {
     return list;
   }
 
-  void note(const std::string& text) {
-    report_.notes.push_back(text);
-    if (o_.note) o_.note(text);
-  }
-
   // ---- start -------------------------------------------------------------------------------------
 
   Outcome begin() {
@@ -119,7 +116,7 @@ class Run {
     if (Outcome o = motion().within_bounds(schedule().forward()); !o.ok()) return o;
     if (Outcome o = follow_beside_start(s_); !o.ok()) return o;
     if (schedule().forward())
-      for (const std::string& text : passed_limits(*s_.model, motion())) note(text);
+      for (const std::string& text : passed_limits(*s_.model, motion())) add_note(report_, o_, text);
     return {};
   }
 
@@ -242,7 +239,7 @@ class Run {
     work_ = std::max(work_, W(abs(course_.integrals()[0])));
     limit_stretch();
     Outcome o = course_.steps(schedule().end(), stretch_);
-    if (const std::string advice = course_.take_advice(); !advice.empty()) note(advice);
+    if (const std::string advice = course_.take_advice(); !advice.empty()) add_note(report_, o_, advice);
     work_ = std::max(work_, W(stretch_.greatest_integral));
     // Nothing is due before the last step of the stretch.
     for (std::size_t i = 0; i + (o.ok() ? 1 : 0) < stretch_.times.size(); ++i) rows_.tell_step(stretch_.times[i]);
@@ -256,7 +253,7 @@ class Run {
     const MassLimit<W> masses = masses_positive_until<N>(*s_.model, course_);
     const auto lost = lost_.in_last_step(course_, first_followed() + o_.followed.size(), masses.t);
     const W& end = lost.t;
-    if (o_.dense && course_.by_taylor()) tell_polynomials(end);
+    if (o_.dense && course_.by_taylor()) o_.dense(polynomials_.of_last_step(motion(), end));
     if (defect_) defect_->step(dense_step(motion().stepper(), end));
     if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
     const bool whole = end == course_.time() && course_.by_taylor();
@@ -286,32 +283,6 @@ class Run {
     const W begin = course_.before(), length = course_.time() - begin;
     for (int k = 1; k < kParts; ++k)
       if (course_.at(begin + length * W(k) / W(kParts)).ok()) watch_.look(course_.point());
-  }
-
-  void tell_polynomials(const W& end) {
-    const Stepper<N>& stepper = motion().stepper();
-    const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical(), first = first_followed();
-    std::optional<Expansion<W>> point;
-    const auto expansion = [&]() -> Expansion<W>& {
-      if (!point) point.emplace(motion().program(), motion().parameters(), std::max(1, stages_));
-      return *point;
-    };
-    const auto value = [&](std::size_t i, double x) -> std::pair<double, double> {
-      return value_of_quadrature(stepper, W(stepper.before() + W(x)), first + i, expansion());
-    };
-    hiding_.belong_to(motion().eliminations());
-    const auto hiding = [&](std::size_t i, double x) -> std::vector<HidingArgument> {
-      const std::vector<HidingSlot>& slots = hiding_.of(motion().program(), first + i);
-      if (slots.empty()) return {};
-      return hiding_arguments(stepper, W(stepper.before() + W(x)), slots, expansion());
-    };
-    o_.dense({to_double(stepper.before()), to_double(end), stepper.order(),
-              [&](std::size_t j, int k) {
-                const std::size_t unknown = j < n ? j : mechanical + j - n;
-                return k > stepper.degree(unknown) ? 0 : to_double(stepper.coefficient(unknown, k));
-              },
-              [&](std::size_t i, int k) { return to_double(stepper.quadrature_coefficient(first + i, k)); },
-              stepper.one_sided(), value, hiding});
   }
 
   // The first of the followed formulas among the quadratures.
@@ -373,74 +344,6 @@ class Run {
   // The rows may be using the watch beside the motion, so the watch gets the work only here.
   void turn_over() { watch_.turn_over(work_); }
 
-  // ---- the report --------------------------------------------------------------------------------
-
-  void report() {
-    report_.order = course_.order();
-    report_.method = course_.report();
-    report_.t = to_double(end_.time());
-    report_.steps = course_.steps();
-    report_.constraints = to_double(course_.worst_constraint());
-    report_.smallest_sigma = to_double(course_.smallest_sigma());
-    report_.smallest_sigma_t = to_double(course_.smallest_sigma_time());
-    if (s_.system.form->eliminates()) report_.eliminations = motion().eliminations();
-    if (const std::size_t times = motion().eliminations(); watch_.any_redundant() && times > 0)
-      note("other independent constraints are chosen " + (times == 1 ? "once" : std::to_string(times) + " times") +
-           " on the way: those at the initial state come to depend on one another");
-    if (shown_.second()) {
-      report_.second = shown_.second()->report();
-      report_.constraints = report_.second->drift;
-    }
-    if (defect_) report_.rigorous = defect_->report();
-    report_watched();
-    if (floors_) report_floors();
-    const std::vector<Warning> more = warnings<N>(s_, course_, watch_, angles_);
-    report_.warnings.insert(report_.warnings.end(), more.begin(), more.end());
-    const bool set = std::any_of(report_.events.begin(), report_.events.end(),
-                                 [](const EventReport& e) { return !e.changes.empty(); });
-    const std::vector<Warning> jumps = warnings_of_jumps<N>(course_, watch_, o_, set);
-    report_.warnings.insert(report_.warnings.end(), jumps.begin(), jumps.end());
-    if (const auto warning = rows_.warning()) report_.warnings.push_back(*warning);
-    judge_.estimate(course_, watched_quadratures(s_, power_), rows_.waiting(), report_);
-  }
-
-  void report_floors() {
-    const Follow follow = [](const Scenario& own, const SimulationOptions& o, RowSink& rows) {
-      return simulate(own, o, rows);
-    };
-    if (!o_.resume) {
-      floors_->supports.locate(
-          [&](const Support& support, double t) { return first_pull(s_, o_, support, t, follow); });
-      floors_->traction.locate([&](const std::function<Expr(const Model&)>& formula, int direction, double t) {
-        return first_passing(s_, o_, formula, direction, t, follow);
-      });
-    }
-    for (const std::string& text : floors_->notes()) note(text);
-  }
-
-  void report_watched() {
-    const std::size_t monitors = s_.model->monitors.size();
-    for (std::size_t i = 0; i < monitors; ++i) {
-      const Monitor& m = s_.model->monitors[i];
-      const bool conserved = declared_conserved(*s_.model, m);
-      WatchedReport& w =
-          (conserved ? report_.conserved : report_.monitors).emplace_back(watched(m.name, watch_.tracks()[i]));
-      if (!conserved) w.times = watch_.times();
-    }
-    for (std::size_t i = 0; i < o_.conserved.size(); ++i)
-      report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));
-  }
-
-  WatchedReport watched(const std::string& name, const Track<W>& track) const {
-    return {name,
-            written().written(track.first),
-            written().written(track.last),
-            written().written(track.least),
-            written().written(track.greatest),
-            track.relative_change(),
-            to_double(track.size)};
-  }
-
   Workspace& s_;
   const SimulationOptions& o_;
   Power power_;
@@ -451,7 +354,7 @@ class Run {
   AngleWatch angles_;
   Judge<N> judge_;
   std::optional<FloorWatch> floors_;
-  HidingSlots hiding_;     // of the followed formulas
+  ToldPolynomials<N> polynomials_;
   std::size_t looks_ = 0;  // looks between rows
   EventPaces<W> paces_;
   LostValues<N> lost_;

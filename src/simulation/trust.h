@@ -98,19 +98,24 @@ std::vector<std::string> passed_limits(const Model& model, const Motion<N>& moti
 
 // Warns of jumps that the equations do not contain: if a potential, a position, the observer or a constraint jumps, or
 // its rate does, an impulse would be needed. Jumps show in integrals of the motion that change, and in constraints that
-// are missed at the start of a step after a kink.
+// are missed at the start of a step, with Taylor's method after a kink. Under another method, its own errors change
+// integrals, too.
 template <Number N>
 std::vector<Warning> warnings_of_jumps(const Course<N>& course, const Watch<Wider<N>>& watch,
                                        const SimulationOptions& o, bool something_set) {
   constexpr double kLeast = 1e-6, kTolerances = 1e4;  // far above the errors of integration
   const double limit = std::max(kLeast, kTolerances * o.tolerance.get_d());
+  const bool taylor = !course.report().differs_from_taylor();
   std::vector<Warning> list;
-  if (!course.by_taylor()) return list;
   const auto warn = [&](const std::string& what, const std::string& of) {
-    list.push_back({what, "if a formula in " + of +
-                              " jumps on the way (sign, piecewise, a table), or its rate does, the impulse that this "
-                              "needs is in no equation: take a smooth function, or let an event set what changes; "
-                              "otherwise look at the digits to trust"});
+    const std::string jump = "if a formula in " + of +
+                             " jumps on the way (sign, piecewise, a table), or its rate does, the impulse that this "
+                             "needs is in no equation: take a smooth function, or let an event set what changes; ";
+    list.push_back({what, taylor
+                              ? jump + "otherwise look at the digits to trust"
+                              : "make the tolerance smaller: if the change becomes smaller with it, the tolerance is "
+                                "too large for a motion of this length; otherwise, " +
+                                    jump.substr(0, jump.size() - 2)});
   };
   const std::size_t first = watch.tracks().size() - o.conserved.size();
   for (std::size_t i = 0; i < o.conserved.size() && !something_set; ++i)
@@ -118,7 +123,7 @@ std::vector<Warning> warnings_of_jumps(const Course<N>& course, const Watch<Wide
       warn("the integral '" + o.conserved[i].name + "' changes by " + number_text(change, 3) + " of its terms",
            "a potential, a position or the motion of the observer");
   if (const double missed = to_double(course.worst_constraint());
-      missed > limit && course.taylor().stepper().kinks() > 0)
+      missed > limit && (!taylor || course.taylor().stepper().kinks() > 0))
     warn("a constraint is missed by " + number_text(missed, 3) + " where a step begins", "a constraint");
   return list;
 }

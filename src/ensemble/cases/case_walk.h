@@ -4,6 +4,7 @@
 // events, outputs. No expressions are built, so all threads share one graph.
 #pragma once
 #include "ensemble/cases/ensemble_plan.h"
+#include "ensemble/reduce/reducer.h"
 #include "integrate/lanes/ordinary_steps.h"
 #include "simulation/event_paces.h"
 #include "simulation/followed_value.h"

@@ -5,6 +5,7 @@
 #include "base/thread_time.h"
 #include "ensemble/case_scenario.h"
 #include "ensemble/columns.h"
+#include "ensemble/reduce/reducer.h"
 
 namespace anholon {
 

@@ -1,43 +1,11 @@
 #include "setup/outputs/chosen_outputs.h"
 
-#include <algorithm>
-
 #include "formula/formula.h"
-#include "modelfile/names/names.h"
+#include "modelfile/names/multiplier_names.h"
 
 namespace anholon {
 
 namespace {
-
-// The names of a model file. lambda.NAME is a multiplier, also that of a constraint that holds in the mode of the model;
-// `lambda` alone is a name without a value.
-class OutputNames final : public Names {
- public:
-  OutputNames(Names& names, const std::vector<std::string>& multipliers) : names_(names), multipliers_(multipliers) {}
-  Graph& graph() override { return names_.graph(); }
-  Value name(const std::string& name, Span span) override {
-    return name == "lambda" ? Value(InertialName{}) : names_.name(name, span);
-  }
-  std::optional<Value> call(const std::string& function, const std::vector<Value>& arguments,
-                            const Syntax& syntax) override {
-    return names_.call(function, arguments, syntax);
-  }
-  Value member(const Value& object, const Syntax& syntax) override {
-    const auto known = std::find(multipliers_.begin(), multipliers_.end(), multiplier_path(syntax));
-    return known != multipliers_.end()
-               ? Value(graph().multiplier(static_cast<std::uint32_t>(known - multipliers_.begin()), 0))
-               : names_.member(object, syntax);
-  }
-  std::vector<std::string> functions() const override { return names_.functions(); }
-  std::optional<Vector> point(const BodyName& body, Span use) override { return names_.point(body, use); }
-  std::optional<Rotation> frame(const BodyName& body, Span use) override { return names_.frame(body, use); }
-  std::string body_name(const BodyName& body) const override { return names_.body_name(body); }
-  bool declares(const std::string& name) const override { return names_.declares(name); }
-
- private:
-  Names& names_;
-  const std::vector<std::string>& multipliers_;
-};
 
 // Returns the outputs of the model with this name; those of a vector are name.x, name.y, name.z.
 std::vector<Monitor> own_outputs(const Model& model, const std::string& name) {
@@ -53,7 +21,6 @@ std::vector<Monitor> own_outputs(const Model& model, const std::string& name) {
 std::shared_ptr<const Model> with_outputs(const OpenModel& open, const std::vector<ChosenOutput>& outputs) {
   auto model = std::make_shared<Model>(*open.model);
   std::vector<Monitor> list;
-  OutputNames names(*open.names, open.model->names.multipliers);
   for (const ChosenOutput& o : outputs) {
     const std::string& formula = o.formula.empty() ? o.name : o.formula;
     if (std::vector<Monitor> own = own_outputs(*open.model, formula); !own.empty()) {
@@ -65,7 +32,8 @@ std::shared_ptr<const Model> with_outputs(const OpenModel& open, const std::vect
     }
     Value value;
     try {
-      value = evaluate(parse_formula(FormulaText(formula, Span{1, 1, 1})), names);
+      value =
+          evaluate_with_multipliers(FormulaText(formula, Span{1, 1, 1}), *open.names, open.model->names.multipliers);
     } catch (const Failure& f) {
       throw Failure({}, "output '" + o.name + "': " + f.diagnostic.message,
                     f.diagnostic.hint.empty() ? "an [output] or [monitor] of the model, or a formula in its names"

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "ensemble/cases/ensemble.h"
+#include "ensemble/reduce/reducer.h"
 #include "ensemble/request.h"
 #include "ensemble/with_contacts.h"
 #include "modelfile/contacts.h"

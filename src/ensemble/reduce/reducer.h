@@ -1,45 +1,19 @@
-// Numbers that summarize the whole motion of a case: the extremes, the mean and the last value of a formula; how often
-// an event fired, and when first.
+// The numbers that summarize the whole motion of a case, collected over its steps and events.
 //
-// The numbers of a formula come from its Taylor polynomials, step by step, not from its values at some times. The steps
-// are as short as the tolerance requires for the series of these formulas (StepSettings::known_from). If a polynomial
-// is not the formula over the whole step (the formula has a smaller radius of convergence than the motion, or no
-// series, like a norm that is zero), pieces of the step get polynomials of their own, through values of the formula.
-// Pieces begin and end where a function that is nearly constant at the start of the step may vary, such as exp in a
-// pulse. A formula that is unbounded has no greatest or no least value, and one whose integral diverges, or
-// converges too slowly to show it, has no mean: the number is NaN. A last value needs the formula at the end alone, and
-// shortens no step.
+// The steps are as short as the tolerance requires for the series of the formulas (StepSettings::known_from). Where a
+// polynomial does not hold over the step, values of the formula are seen, in pieces that begin and end where a function
+// that is nearly constant at the start of the step may vary, such as exp in a pulse. A last value needs the formula at
+// the end alone, and shortens no step.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "ensemble/reduce/pieces.h"
+#include "ensemble/reduce/formula_summary.h"
+#include "ensemble/reduce/reductions.h"
 #include "integrate/series/hidden_points.h"
-#include "modelfile/contacts.h"
-#include "modelfile/read.h"
-#include "setup/scenario.h"
 
 namespace anholon {
-
-struct Reduction {
-  enum class Kind : std::uint8_t { greatest, least, mean, last, count, first } kind = Kind::greatest;
-  // The index: for a last value among the ends, for a count or a first time the event, otherwise the formula.
-  std::size_t of = 0;
-  std::string name;  // "max(height)", as it was written
-  bool of_event() const { return kind == Kind::count || kind == Kind::first; }
-};
-
-struct Reductions {
-  std::vector<Expr> formulas;       // formulas whose values along the motion are needed
-  std::vector<Expr> ends;           // formulas whose last values are needed
-  std::vector<std::string> events;  // their names in the report of a motion
-  std::vector<Reduction> list;
-
-  // Adds KIND(FORMULA), KIND one of max, min, mean, last; the formula is a monitor or any formula that a monitor may
-  // be, without multipliers if contacts move. Or adds count(EVENT) or first(EVENT); the event is one of the model or of
-  // a contact that moves. Builds in the graph of the model. Throws MistakeInWord.
-  void add(const std::string& word, const OpenModel& model, const std::vector<Contact>& moving = {});
-};
 
 // A function that may hide its variation, with the polynomial of its argument over a step.
 struct HidingPolynomial {
@@ -79,28 +53,17 @@ class Reducer {
   void values(std::vector<double>& to) const;
 
  private:
-  struct Seen {
-    bool greatest = false, least = false, mean = false;  // requested, and still available
-    bool lost = false;                                   // a value is missing
-    bool done() const { return lost || !(greatest || least || mean); }
-    double most = 0, fewest = 0, last = 0, integral = 0, carry = 0;
-    double beyond = 0;             // the length of the pieces where the motion has no solution
-    double weight = 0, doubt = 0;  // the integral of magnitudes, and the part of it that may diverge
-  };
   struct Fired {
     double times = 0, first = 0;
   };
-  bool agrees(double is, double foretold, double size) const;
   bool holds(const ReducedStep& step, std::size_t formula);
   void find_hidden(const ReducedStep& step, std::size_t formula);
   void find_by_values(const ReducedStep& step, std::size_t formula,
                       const std::function<void(const Hiding&, const std::vector<double>&)>& add);
-  void see(Seen& s, double h, double scale);
-  void see_by_values(const ReducedStep& step, std::size_t formula);
 
   const Reductions* of_;
   double tolerance_;
-  std::vector<Seen> seen_;
+  std::vector<FormulaSummary> seen_;  // of the formulas
   std::vector<double> ends_;
   std::vector<Fired> fired_;
   std::vector<double> polynomial_;
