@@ -49,19 +49,73 @@ Column bracket(const VectorField& X, const VectorField& Y) {
   return b;
 }
 
+// Returns the holonomic constraints that are independent at the state. The others follow from them nearby, but for
+// singular configurations.
+static Column independent_holonomic(const Mechanics& m, PointValues& near) {
+  constexpr double kDependent = 1e-9;
+  Column phi;
+  for (std::size_t r = 0; r < m.phi.size(); ++r)
+    if (m.order[r] == 0) phi.push_back(m.phi[r]);
+  Matrix<double> a(phi.size(), m.q.size());
+  for (std::size_t i = 0; i < a.rows; ++i) {
+    const Column row = gradient(phi[i], m.q);
+    for (std::size_t j = 0; j < a.cols; ++j) a(i, j) = near(row[j]);
+  }
+  Column independent;
+  for (const std::size_t i : choose_rows(a, kDependent).independent) independent.push_back(phi[i]);
+  return independent;
+}
+
 FormPoint::FormPoint(const Mechanics& m, PointValues& near, std::uint64_t seed, bool other_parameters) {
   Graph& g = m.graph();
   Column es;
   for (const Parameter& p : m.model->parameters) es.push_back(p.value);
-  std::vector<Multi> parameters = evaluate_parameters<Multi>(g, es);
-  symbol_ = [&g, &near, seed, other_parameters, parameters = std::move(parameters)](const Node& n) {
-    const double u = generic_value(n, seed);
-    if (n.kind == Kind::parameter && !other_parameters && n.index < parameters.size()) return parameters[n.index];
-    if (n.kind != Kind::time && n.kind != Kind::jet) return Multi(0.6 + 0.8 * u);
-    const double base = near(n.kind == Kind::time ? g.time() : g.jet(n.index, n.order));
-    return Multi(base) + Multi((1 + std::abs(base)) * (0.05 + 0.3 * u));
+  const std::vector<Multi> parameters = evaluate_parameters<Multi>(g, es);
+  const auto begin = [&](double distance) {
+    symbol_ = [&g, &near, seed, distance, other_parameters, parameters](const Node& n) {
+      const double u = generic_value(n, seed);
+      if (n.kind == Kind::parameter && !other_parameters && n.index < parameters.size()) return parameters[n.index];
+      if (n.kind != Kind::time && n.kind != Kind::jet) return Multi(0.6 + 0.8 * u);
+      const double base = near(n.kind == Kind::time ? g.time() : g.jet(n.index, n.order));
+      return Multi(base) + Multi(distance * (1 + std::abs(base)) * (0.05 + 0.3 * u));
+    };
+    values_ = std::make_unique<ValuesAt<Multi>>(symbol_);
   };
-  values_ = std::make_unique<ValuesAt<Multi>>(symbol_);
+  const Column phi = independent_holonomic(m, near);
+  for (const double distance : {1.0, 0.25, 0.0625}) {
+    begin(distance);
+    if (phi.empty() || satisfy(m.q, phi)) return;
+  }
+  begin(1);
+}
+
+// Moves the positions to near ones that satisfy the constraints. Returns false if Newton's method does not find them.
+bool FormPoint::satisfy(const Column& q, const Column& phi) {
+  constexpr int kMostSteps = 40;
+  constexpr double kSatisfied = 1e-45;
+  Rows rows;
+  for (const Expr f : phi) rows.push_back(gradient(f, q));
+  Matrix<Multi> unit(q.size(), q.size()), a(phi.size(), q.size());
+  for (std::size_t j = 0; j < q.size(); ++j) unit(j, j) = Multi(1);
+  std::vector<Multi> missed(phi.size()), step;
+  for (int k = 0; k < kMostSteps; ++k) {
+    bool good = true;
+    for (std::size_t i = 0; i < phi.size(); ++i) {
+      missed[i] = -(*values_)(phi[i]);
+      if (!missed[i].finite()) return false;
+      good = good && abs(missed[i]) < Multi(kSatisfied);
+      for (std::size_t j = 0; j < q.size(); ++j) a(i, j) = (*values_)(rows[i][j]);
+    }
+    if (good) return true;
+    if (!least_change(unit, a, missed, step)) return false;
+    std::vector<Multi> moved;
+    for (std::size_t j = 0; j < q.size(); ++j) moved.push_back((*values_)(q[j]) + step[j]);
+    symbol_ = [symbol = symbol_, moved = std::move(moved)](const Node& n) {
+      return n.kind == Kind::jet && n.order == 0 ? moved[n.index] : symbol(n);
+    };
+    values_ = std::make_unique<ValuesAt<Multi>>(symbol_);
+  }
+  return false;
 }
 
 PointValues FormPoint::rough() const {

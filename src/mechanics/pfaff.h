@@ -41,7 +41,8 @@ inline constexpr double kFormZero = 1e-35, kIndependent = 1e-25;
 
 struct NoValue {};  // a formula has no value at the point
 
-// A random point near a state. REQUIRES: a PrecisionScope of kFormDigits.
+// A random point near a state. Its positions satisfy the holonomic constraints if Newton's method finds such positions,
+// because constraints may depend on one another there alone. REQUIRES: a PrecisionScope of kFormDigits.
 class FormPoint {
  public:
   // The seed determines the point; with `other_parameters` the parameters have random values as well, instead of their
@@ -52,6 +53,10 @@ class FormPoint {
   PointValues rough() const;
 
  private:
+  bool satisfy(const Column& q, const Column& phi);
+
+  bool satisfy(const Mechanics& m);
+
   std::function<Multi(const Node&)> symbol_;
   std::unique_ptr<ValuesAt<Multi>> values_;
 };

@@ -78,6 +78,19 @@ void pivot_claims(const Mechanics& M, const Elimination& e, long bits, std::vect
   }
 }
 
+// Returns the equations of another mechanics in which the multipliers of constraints that the elimination leaves out are
+// zero: these constraints follow from the others, and so do the reactions that they would have.
+Column without_redundant(const Column& equations, const Elimination& e, const Model& model) {
+  if (e.constraints.size() == model.constraints.size()) return equations;
+  Graph& g = *model.graph;
+  return substitute(equations, [&](NodeId id) {
+    const Node& n = g.node(id);
+    const bool left_out = n.kind == Kind::multiplier &&
+                          std::find(e.constraints.begin(), e.constraints.end(), n.index) == e.constraints.end();
+    return left_out ? g.zero() : Expr{};
+  });
+}
+
 FormProof against_routh(const Mechanics& M, const Formulation& form, const Equations& equations, const Elimination& e,
                         Effort effort, long bits) {
   FormProof proof{&form, Verdict::unknown, {}};
@@ -92,10 +105,11 @@ FormProof against_routh(const Mechanics& M, const Formulation& form, const Equat
     }
   } else {
     const Column a = e.on(lagrange_operator(M) - forces(M));
+    const Column own = form.unknowns == Unknowns::variational ? without_redundant(residual, e, model) : residual;
     const bool along =
         // The projection of n equations without multipliers along the constraints is taken.
-        residual.size() == M.q.size() && !e.constraints.empty();
-    const Column contracted = along ? e.contract(residual) : residual;
+        own.size() == M.q.size() && !e.constraints.empty();
+    const Column contracted = along ? e.contract(own) : own;
     for (std::size_t nu = 0; nu < contracted.size(); ++nu) {
       Difference d{e.free.names[nu], contracted[nu], {}, {}, {}, {}};
       for (std::size_t s = 0; s < a.size(); ++s)

@@ -169,6 +169,29 @@ void Stage<N>::drop_round_off() {
   }
 }
 
+// A direction without inertia still needs a metric: adds `least` to the diagonal where Cholesky's pivot vanishes but for
+// round-off. The sum of both is positive definite if the matrix has no negative eigenvalue.
+template <Number N>
+static void support_metric(Matrix<N>& metric, const N& least) {
+  constexpr double kVanishes = 1e-12;
+  const std::size_t n = metric.rows;
+  Matrix<N> factor(n, n);
+  for (std::size_t i = 0; i < n; ++i) {
+    N pivot = metric(i, i);
+    for (std::size_t j = 0; j < i; ++j) {
+      N rest = metric(i, j);
+      for (std::size_t k = 0; k < j; ++k) rest -= factor(i, k) * factor(j, k);
+      factor(i, j) = N(rest / factor(j, j));
+      pivot -= factor(i, j) * factor(i, j);
+    }
+    if (!(pivot > N(kVanishes) * metric(i, i))) {
+      metric(i, i) += least;
+      pivot = std::max(N(pivot + least), least);
+    }
+    factor(i, i) = sqrt(pivot);
+  }
+}
+
 template <Number N>
 bool Stage<N>::read_metric() {
   const std::size_t n = unknowns(), q = m_.q.size();
@@ -182,7 +205,6 @@ bool Stage<N>::read_metric() {
       if (!is_finite(mass(a, b))) return false;
       if (a == b && abs(mass(a, b)) > largest) largest = abs(mass(a, b));
     }
-  // A coordinate without inertia still needs a metric.
   if (!(largest > N(0))) largest = N(1);
   const auto measured = [&](const Node& u) { return u.kind == Kind::jet && (plan_->metric >> u.order & 1U) != 0; };
   for (std::size_t i = 0; i < n; ++i) {
@@ -190,8 +212,8 @@ bool Stage<N>::read_metric() {
     if (measured(a))
       for (std::size_t j = 0; j < n; ++j)
         if (const Node& b = unknown(j); measured(b) && a.order == b.order) metric(i, j) = mass(a.index, b.index);
-    metric(i, i) += largest * N(1e-12);
   }
+  support_metric(metric, N(largest * N(1e-12)));
   return true;
 }
 
