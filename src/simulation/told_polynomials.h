@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "motion/motion.h"
+#include "observe/options.h"
 #include "simulation/followed_value.h"
-#include "simulation/simulate.h"
 
 namespace anholon {
 

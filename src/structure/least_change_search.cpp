@@ -232,6 +232,16 @@ class Iteration {
     e.change.solve(right_, step_);
     if (nearest)
       for (std::size_t j = 0; j < n; ++j) step_[j] = N(guess_[j] + step_[j] - *x_[j]);
+    drop_round_off();
+  }
+
+  // Sets entries of the step to zero that are far below the round-off of the largest number: they stand for zero.
+  void drop_round_off() {
+    N largest(0);
+    for (std::size_t j = 0; j < step_.size(); ++j) largest = std::max({largest, N(abs(step_[j])), N(abs(*x_[j]))});
+    const N zero = largest * unit_roundoff<N>() * unit_roundoff<N>();
+    for (N& change : step_)
+      if (abs(change) <= zero) change = N(0);
   }
 
   // True if the residuals are those of Newton's flow at this part of the step: they fall by this part, with an error of
