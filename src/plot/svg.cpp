@@ -68,11 +68,11 @@ std::string draw_svg(const Drawing& d, const std::string& title) {
   out += "</style>\n";
   // The size of a patch is the difference of its rounded edges, so that patches that share an edge share it in the
   // picture, too.
-  const auto at = [](double x) { return std::round(x * 100) / 100; };
+  const auto rounded = [](double x) { return std::round(x * 100) / 100; };
   for (const Patch& p : d.patches) {
     char colour[8];
     std::snprintf(colour, sizeof colour, "#%06x", static_cast<unsigned>(p.rgb & 0xffffffU));
-    const Point from = {at(p.from.x), at(p.from.y)}, to = {at(p.to.x), at(p.to.y)};
+    const Point from = {rounded(p.from.x), rounded(p.from.y)}, to = {rounded(p.to.x), rounded(p.to.y)};
     out += "<rect x=\"" + number(from.x) + "\" y=\"" + number(from.y) + "\" width=\"" + number(to.x - from.x) +
            "\" height=\"" + number(to.y - from.y) + "\" fill=\"" + colour + "\" shape-rendering=\"crispEdges\"/>\n";
   }
