@@ -212,7 +212,8 @@ static std::size_t coordinate_with_value(const Model& model, const std::string& 
   const auto varies = [&](const std::string& n) { return std::find(known.begin(), known.end(), n) != known.end(); };
   if (!varies(name))
     if (const std::string habit = habit_of_derivative(name, varies); !habit.empty())
-      throw Failure({}, called + "there is no coordinate '" + name + "'", habit);
+      throw Failure({}, called + "there is no coordinate '" + name + "'",
+                    habit + "; the coordinate" + (known.size() == 1 ? " is " : "s are ") + listed(known));
   return coordinate_of(model, name, called);
 }
 
