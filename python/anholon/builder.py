@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Union
 
@@ -265,11 +266,36 @@ class Builder:
         """Adds a dissipation function R; its forces are -dR/dq'."""
         self._entry("dissipation", name, power)
 
-    def table(self, name: str, x: Sequence[Term], y: Sequence[Term], *, fit: str | None = None, outside: str | None = None) -> None:
-        """Adds a function by its values y at x; ``an.call(name, at)`` calls it."""
+    def table(
+        self,
+        name: str,
+        x: Sequence[Term] | None = None,
+        y: Sequence[Term] | None = None,
+        *,
+        file: str | os.PathLike[str] | None = None,
+        columns: Sequence[str | int] | None = None,
+        fit: str | None = None,
+        outside: str | None = None,
+    ) -> None:
+        """Adds a function by its values; ``an.call(name, at)`` calls it.
+
+        Args:
+            name: the name of the function.
+            x: the knots, ascending.
+            y: the values at x.
+            file: instead of x and y, a text file of columns. :meth:`model` looks for it in the working directory.
+            columns: two names of the heading of the file, or numbers from 1; the first two if it is None.
+            fit: ``hold``, ``linear``, ``monotone`` or ``spline``: the values between the knots; ``linear`` if it is None.
+            outside: ``hold``, ``linear`` or ``error``: the values beyond the knots; ``hold`` if it is None.
+        """
         keys = {"name": value_text(name)}
         for key, values in (("x", x), ("y", y)):
-            keys[key] = "[" + ", ".join(expr(value).text for value in values) + "]"
+            if values is not None:
+                keys[key] = "[" + ", ".join(expr(value).text for value in values) + "]"
+        if file is not None:
+            keys["file"] = value_text(os.fspath(file))
+        if columns is not None:
+            keys["columns"] = "[" + ", ".join(str(column) if isinstance(column, int) else value_text(column) for column in columns) + "]"
         for key, word in (("fit", fit), ("outside", outside)):
             if word is not None:
                 keys[key] = value_text(word)

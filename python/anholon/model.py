@@ -34,6 +34,15 @@ if TYPE_CHECKING:
 _ELSEWHERE = {
     "t": 'initial={"t": 1} is the time at which the motion starts',
     "save": "run.save(\"run.h5\") writes the rows; pickle.dumps(run) keeps the run with all that it can do",
+    "inputs": "[input] in the model has the formulas of its inputs; model.with_(k=2) changes their parameters, and a [[table]] has measured values",
+    "input": "[input] in the model has the formulas of its inputs; model.with_(k=2) changes their parameters, and a [[table]] has measured values",
+    "rtol": "tolerance=1e-10 is relative to the largest unknown of its dimension, at least to 1 in SI units",
+    "atol": "tolerance=1e-10 is relative to the largest unknown of its dimension, at least to 1 in SI units",
+    "parameters": "model.with_(m=2) is the model with another value",
+    "x0": 'initial={"x": 1, "x\'": 0} gives values in place of those of the file',
+    "y0": 'initial={"x": 1, "x\'": 0} gives values in place of those of the file',
+    "t_span": "to=10 is the end; initial={\"t\": 1} is the time at which the motion starts",
+    "t_eval": "at=[0, 0.5, 1] are the times of rows",
     "continue": 'initial={"t": run.t[-1], "x": run["x"][-1], …}, with all coordinates and velocities of the last row, goes on from there; anholon simulate --continue has the same bits as one run',
 }
 
@@ -187,7 +196,10 @@ class Model(Analysed):
             if name in _ELSEWHERE:
                 raise ModelError(f"there is no option {name!r}\nhint: {_ELSEWHERE[name]}")
             if value is not False and value is not None:
-                words[name.replace("_", "-")] = "" if value is True else text_of(value)
+                try:
+                    words[name.replace("_", "-")] = "" if value is True else text_of(value)
+                except TypeError as mistake:
+                    raise TypeError(f"{name}: {mistake}") from None
         try:
             system = self._system(form, texts_of(initial), eliminate)
         except MotionError as error:

@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 import anholon as an
+import numpy as np
 import pytest
 from anholon import ex, ey, ez
 
@@ -494,3 +495,24 @@ def test_constraints_that_are_switched_or_push() -> None:
     c.gravity(-10 * ez)
     c.monitor("load", table.multiplier)
     assert c.model().simulate(at=[1])["load"] == pytest.approx([20])
+
+
+def test_a_table_may_stand_in_a_file(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "push.csv").write_text("t,none,push\n0,0,1\n2,0,3\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+
+    def pushed(**table: Any) -> an.Run:
+        b = an.Builder("Cart")
+        x = b.coordinate("x")
+        b.table("push", **table)
+        b.particle("cart", mass=1, position=[x, 0, 0])
+        b.force("cart", [an.call("push", an.t), 0, 0])
+        return b.model().simulate(at=[0, 1, 2])
+
+    written = pushed(x=[0, 2], y=[1, 3])
+    assert written["x"][-1] == pytest.approx(2 + 4 / 3, abs=1e-12)
+    for columns in (["t", "push"], [1, 3]):
+        assert np.array_equal(pushed(file=tmp_path / "push.csv", columns=columns)["x"], written["x"])
+        assert np.array_equal(pushed(file="push.csv", columns=columns)["x"], written["x"])
+    with pytest.raises(an.ModelError, match="relative to the working directory"):
+        pushed(file="pull.csv")

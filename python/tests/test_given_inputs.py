@@ -161,3 +161,9 @@ def test_an_input_that_acts_in_another_input_alone_can_be_set() -> None:
 def test_an_input_whose_rate_acts_cannot_be_set_alone() -> None:
     with pytest.raises(an.ModelError, match="acts by its rate"):
         an.loads(THROUGH).dynamics(inputs=["V"])
+
+
+def test_c_code_says_whether_u_may_be_a_null_pointer() -> None:
+    model = an.loads('coordinates = ["x"]\nparticle = [{name = "p", mass = 2, position = "x*ex"}]\nforce = [{on = "p", vector = "u*ex"}]\ninput.u = "cos(t)"')
+    assert "u is no null pointer" in model.dynamics(inputs=True).c_code()
+    assert "u may be a null pointer" in model.dynamics().c_code()

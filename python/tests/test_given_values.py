@@ -174,10 +174,12 @@ def test_what_python_calls_otherwise_is_named(disc: an.Model) -> None:
     for ask in asked:
         with pytest.raises(an.ModelError, match="digits is a whole number from 1 to 2000, not '30'"):
             ask(digits="30")
-    for option, way in (("save", "run.save"), ("continue", "initial="), ("t", 'initial={"t": 1}')):
+    for option, way in (("save", "run.save"), ("continue", "initial="), ("t", 'initial={"t": 1}'), ("inputs", "[input]"), ("rtol", "tolerance=")):
         with pytest.raises(an.ModelError) as refused:
             disc.simulate(to=1, **{option: "run.h5"})  # type: ignore[arg-type]
         assert f"there is no option '{option}'" in str(refused.value) and way in str(refused.value)
+    with pytest.raises(an.ModelError, match=r"there is no coordinate 'theta_dot'\nhint: a derivative by time is written with a prime: theta'"):
+        disc.simulate(to=1, initial={"theta_dot": 1})
     run = disc.simulate(to=1)
     for key in (slice(1, 2), ["x", "y"], 0):
         with pytest.raises(an.ColumnError, match=r"takes the name of one column"):

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "base/diagnostic.h"
 #include "base/utf8.h"
@@ -46,6 +47,16 @@ static std::string near_option(const std::string& word, const std::vector<std::s
   const auto begins = [&](const std::string& name) { return name.starts_with(word); };
   if (word.size() >= kShortest && std::count_if(known.begin(), known.end(), begins) == 1)
     return *std::find_if(known.begin(), known.end(), begins);
+  // Words of other programs.
+  static const std::map<std::string, std::string> other = {
+      {"--tend", "--to"},       {"--t-end", "--to"},   {"--tmax", "--to"},        {"--t-max", "--to"},
+      {"--tf", "--to"},         {"--tfinal", "--to"},  {"--t-final", "--to"},     {"--tstop", "--to"},
+      {"--until", "--to"},      {"--end", "--to"},     {"--duration", "--to"},    {"--time", "--to"},
+      {"--dt", "--every"},      {"--step", "--every"}, {"--rtol", "--tolerance"}, {"--reltol", "--tolerance"},
+      {"--atol", "--tolerance"}};
+  if (const auto it = other.find(word);
+      it != other.end() && std::find(known.begin(), known.end(), it->second) != known.end())
+    return it->second;
   if (word.starts_with("--out") && std::find(known.begin(), known.end(), "-o") != known.end()) return "-o";
   return did_you_mean(word, known);
 }

@@ -57,8 +57,12 @@ class CasadiFile {
     list("y", f_.output_names, {});
     return out + R"( *
  * int $_rhs(t, x, u, p, dx) has the rates; a null pointer for p stands for the default values. It returns 0, or 1 if the
- * equations have no solution (dx is then NaN).
- * $_start, $_input_values and $_defaults are the initial state, inputs and parameters of the model.
+ * equations have no solution (dx is then NaN).)" +
+           std::string(f_.u.size() == 0 ? " u may be a null pointer.\n"
+                                        : "\n * u is no null pointer: the formulas of the inputs are not in this file. "
+                                          "$_input_values are their values at\n"
+                                          " * the initial state.\n") +
+           R"( * $_start, $_input_values and $_defaults are the initial state, inputs and parameters of the model.
  * $ is a function (t, x, u, p) -> (dx, y) in CasADi's external interface, with its Jacobian jac_$.
  */
 #include <math.h>

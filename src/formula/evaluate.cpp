@@ -333,13 +333,7 @@ Value call(const Syntax& s, Names& names) {
     return quaternion(e[0], e[1], e[2], e[3]);
   }
 
-  answer_habits(s, names);
-  std::vector<std::string> known = names.functions();
-  const std::vector<std::string> built_in = function_names();
-  known.insert(known.end(), built_in.begin(), built_in.end());
-  const std::string near = did_you_mean(f, known);
-  throw Failure(s.span, "unknown function '" + f + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                near.empty() ? "a product is written with '*'" : "");
+  refuse_unknown_function(s, names);
 }
 
 // Evaluates a sum. All its terms are added at once, so that a long sum takes linear work.
@@ -379,6 +373,17 @@ Value product_of(const Syntax& s, Names& names) {
 }
 
 }  // namespace
+
+void refuse_unknown_function(const Syntax& call, Names& names) {
+  const std::string& f = call.text;
+  answer_habits(call, names);
+  std::vector<std::string> known = names.functions();
+  const std::vector<std::string> built_in = function_names();
+  known.insert(known.end(), built_in.begin(), built_in.end());
+  const std::string near = did_you_mean(f, known);
+  throw Failure(call.span, "unknown function '" + f + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                near.empty() ? "a product is written with '*'" : "");
+}
 
 static Value value_of(const Syntax& s, Names& names) {
   Graph& g = names.graph();

@@ -177,6 +177,9 @@ Value as_frame(Value v, Names& names, Span use);
 // Returns the hint for a body that is neither point nor frame: "write shell.center for its point".
 std::string body_hint(const Value& v, const Names& names);
 
+// Throws the Failure of a call of a function that neither the formulas nor the names have.
+[[noreturn]] void refuse_unknown_function(const Syntax& call, Names& names);
+
 Value evaluate(const Syntax& s, Names& names);
 Expr evaluate_number(const Syntax& s, Names& names);
 Vector evaluate_vector(const Syntax& s, Names& names);  // 0 is also the zero vector

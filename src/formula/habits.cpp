@@ -1,7 +1,9 @@
 #include "formula/habits.h"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
+#include <tuple>
 #include <vector>
 
 #include "formula/functions.h"
@@ -151,7 +153,13 @@ std::string habit_of_member(const Syntax& s) {
   return {};
 }
 
-std::string habit_of_name(const std::string& name, const std::function<bool(const std::string&)>& varies) {
+std::string habit_of_derivative(const std::string& name, const std::function<bool(const std::string&)>& varies) {
+  // dx/dt and d2x/dt2
+  for (const auto& [begin, end, order] : {std::tuple("d", "/dt", 1), {"d2", "/dt2", 2}, {"d^2", "/dt^2", 2}})
+    if (name.starts_with(begin) && name.ends_with(end) && name.size() > std::strlen(begin) + std::strlen(end)) {
+      const std::string base = name.substr(std::strlen(begin), name.size() - std::strlen(begin) - std::strlen(end));
+      if (varies(base)) return derivative(base + std::string(static_cast<std::size_t>(order), '\''));
+    }
   struct Affix {
     const char* text;
     bool behind;
@@ -171,6 +179,31 @@ std::string habit_of_name(const std::string& name, const std::function<bool(cons
     if (const std::string base = a.behind ? name.substr(0, rest) : name.substr(text.size()); varies(base))
       return derivative(base + std::string(static_cast<std::size_t>(a.order), '\''));
   }
+  return {};
+}
+
+std::string habit_of_unit(const std::string& name) {
+  static const std::map<std::string, const char*> list = {
+      {"sec", "s"},        {"secs", "s"},        {"second", "s"},       {"seconds", "s"},     {"minute", "min"},
+      {"minutes", "min"},  {"hr", "h"},          {"hrs", "h"},          {"hour", "h"},        {"hours", "h"},
+      {"days", "day"},     {"degree", "deg"},    {"degrees", "deg"},    {"degs", "deg"},      {"radian", "rad"},
+      {"radians", "rad"},  {"rads", "rad"},      {"meter", "m"},        {"meters", "m"},      {"metre", "m"},
+      {"metres", "m"},     {"millimeter", "mm"}, {"millimeters", "mm"}, {"centimeter", "cm"}, {"centimeters", "cm"},
+      {"kilometer", "km"}, {"kilometers", "km"}, {"gram", "g"},         {"grams", "g"},       {"kilogram", "kg"},
+      {"kilograms", "kg"}, {"kgs", "kg"},        {"Kg", "kg"},          {"KG", "kg"},         {"ton", "t"},
+      {"tons", "t"},       {"tonne", "t"},       {"tonnes", "t"},       {"newton", "N"},      {"newtons", "N"},
+      {"Newton", "N"},     {"joule", "J"},       {"joules", "J"},       {"watt", "W"},        {"watts", "W"},
+      {"pascal", "Pa"},    {"hertz", "Hz"},      {"hz", "Hz"},          {"Nm", "N*m"},        {"kNm", "kN*m"},
+      {"Ns", "N*s"},       {"Nms", "N*m*s"},     {"Js", "J*s"},         {"Ws", "W*s"},        {"kgm", "kg*m"},
+      {"mps", "m/s"},      {"kmh", "km/h"},      {"kph", "km/h"},       {"mph", "mi/h"},      {"rps", "rev/s"},
+      {"inch", "in"},      {"inches", "in"},     {"feet", "ft"},        {"lbs", "lb"},        {"liter", "L"},
+      {"litre", "L"}};
+  const auto it = list.find(name);
+  return it == list.end() ? std::string() : it->second;
+}
+
+std::string habit_of_name(const std::string& name, const std::function<bool(const std::string&)>& varies) {
+  if (const std::string habit = habit_of_derivative(name, varies); !habit.empty()) return habit;
   if (among(name, {"e", "E", "euler_e"})) return "write exp(1), and exp(x) for its powers";
   if (among(name, {"PI", "Pi", "M_PI"})) return "write pi";
   if (among(name, {"time", "T", "Time"})) return "the time is t";

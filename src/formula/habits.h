@@ -14,6 +14,10 @@ std::string habit_of_call(const Syntax& call);
 std::string habit_of_member(const Syntax& member);
 // Returns the hint for a name that does not exist: xdot. `varies` tells which names have derivatives.
 std::string habit_of_name(const std::string& name, const std::function<bool(const std::string&)>& varies);
+// The same for names that look like a derivative by time only: xdot, vx, dx/dt.
+std::string habit_of_derivative(const std::string& name, const std::function<bool(const std::string&)>& varies);
+// Returns the unit that is meant by a word that is no unit: s for sec, N*m for Nm; empty if none is known.
+std::string habit_of_unit(const std::string& name);
 // Returns the hint for a sign without meaning: &, °, √.
 std::string habit_of_sign(const std::string& sign);
 

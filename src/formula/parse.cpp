@@ -244,6 +244,8 @@ class Parser {
       if (name.text == "and" || name.text == "or")
         fail(name, "conditions are not joined by '" + name.text + "'", habit_of_sign(name.text == "and" ? "&" : "∨"));
       if (!find_unit(name.text)) {
+        if (const std::string unit = habit_of_unit(name.text); !unit.empty())
+          fail(name, "'" + name.text + "' is no unit", "write " + number.text + " " + text + unit);
         const std::string near = did_you_mean(name.text, unit_names());
         fail(name, "'" + name.text + "' is no unit" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
              "a name after a number is a unit; write " + number.text + "*" + name.text + " for a product");

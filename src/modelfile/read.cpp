@@ -11,6 +11,7 @@
 #include "modelfile/check/coefficients.h"
 #include "modelfile/check/dimensions.h"
 #include "modelfile/check/doubled_gravity.h"
+#include "modelfile/check/unknown_names.h"
 #include "modelfile/check/values.h"
 #include "modelfile/contacts.h"
 #include "modelfile/implied_units.h"
@@ -120,6 +121,7 @@ class Reader {  // its references are used only while it runs
     guard([&] { read_simulate(root, scope_, model_, diagnostics_); });
     for (const Diagnostic& d : scope_.failures)
       if (!is_repeated(diagnostics_, d)) diagnostics_.add(d);
+    if (diagnostics_.has_errors()) report_unknown_names(root, scope_, overrides_, diagnostics_);
     gather_errors(root);
     if (!diagnostics_.has_errors()) check_values(model_, diagnostics_);
     if (!diagnostics_.has_errors())
@@ -145,6 +147,11 @@ class Reader {  // its references are used only while it runs
  private:
   bool guard(const std::function<void()>& f, Span place = {}) { return collect(diagnostics_, f, place); }
   bool guard(const std::function<void()>& f, const Item& element) { return collect(diagnostics_, f, element); }
+
+  // Declares a name by f. If f fails, the uses of the name fail silently.
+  void declare(const std::string& name, const std::function<void()>& f, const Item& element) {
+    if (!guard(f, element)) scope_.note_failed(name);
+  }
 
   void observer(const Item& root) {
     if (const Item* o = table(root, "observer"))
@@ -177,7 +184,10 @@ class Reader {  // its references are used only while it runs
       if (i.kind != Item::Kind::table) declared.insert("unknown name '" + i.key + "'");
       for (const Item& inner : i.items) declared.insert("unknown name '" + inner.key + "'");
     }
-    diagnostics_.leave_out([&](const std::string& message) { return declared.contains(message); });
+    diagnostics_.leave_out([&](const std::string& message) {
+      const std::size_t end = message.find("; did you mean '");
+      return declared.contains(message.substr(0, end));
+    });
     diagnostics_.gather([](const std::string& message) {
       return message.rfind("unknown name '", 0) == 0 || message.rfind("unknown function '", 0) == 0;
     });
@@ -256,7 +266,8 @@ class Reader {  // its references are used only while it runs
     const Item* section = table(root, "parameters");
     if (section)
       for (const Item& i : section->items)
-        guard(
+        declare(
+            i.key,
             [&] {
               const Item* value = &i;
               std::string doc;
@@ -336,7 +347,8 @@ class Reader {  // its references are used only while it runs
     const Item* section = table(root, "functions");
     if (!section) return;
     for (const Item& i : section->items)
-      guard(
+      declare(
+          i.key.substr(0, i.key.find('(')),
           [&] {
             Scope::Declaration d;
             d.role = Scope::Role::function;
@@ -376,7 +388,8 @@ class Reader {  // its references are used only while it runs
     const Item* section = table(root, key);
     if (!section) return;
     for (const Item& i : section->items)
-      guard(
+      declare(
+          i.key,
           [&] {
             Scope::Declaration d;
             d.role = role;

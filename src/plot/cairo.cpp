@@ -61,6 +61,20 @@ void stroke(cairo_t* c, const Stroke& s) {
   library().cairo_stroke(c);
 }
 
+// Fills a patch. If the picture has pixels, the corners are rounded to borders of pixels, so that patches that share an
+// edge share it there, too, and no row of pixels between them stays white.
+void rectangle(cairo_t* c, const Patch& p, double pixels_per_point) {
+  const auto at = [&](double x) {
+    return pixels_per_point > 0 ? std::round(x * pixels_per_point) / pixels_per_point : x;
+  };
+  const Point from = {at(p.from.x), at(p.from.y)}, to = {at(p.to.x), at(p.to.y)};
+  library().cairo_move_to(c, from.x, from.y);
+  library().cairo_line_to(c, to.x, from.y);
+  library().cairo_line_to(c, to.x, to.y);
+  library().cairo_line_to(c, from.x, to.y);
+  library().cairo_fill(c);
+}
+
 void font(cairo_t* c, const Word& w, const TextPiece& p) {
   library().cairo_select_font_face(c, "serif", p.italic ? CAIRO_FONT_SLANT_ITALIC : CAIRO_FONT_SLANT_NORMAL,
                                    CAIRO_FONT_WEIGHT_NORMAL);
@@ -123,6 +137,7 @@ std::string draw_cairo(const Drawing& d, const std::string& title, CairoFormat f
     return CAIRO_STATUS_SUCCESS;
   };
   constexpr double kPixelsPerPoint = 200.0 / 72;
+  const double pixels = format == CairoFormat::png ? kPixelsPerPoint : 0;
   cairo_surface_t* surface = nullptr;
   if (format == CairoFormat::pdf) {
     surface = library().cairo_pdf_surface_create_for_stream(keep, &bytes, d.width, d.height);
@@ -150,8 +165,7 @@ std::string draw_cairo(const Drawing& d, const std::string& title, CairoFormat f
     library().cairo_set_source_rgb(c, static_cast<double>(p.rgb >> 16 & 255U) / 255,
                                    static_cast<double>(p.rgb >> 8 & 255U) / 255,
                                    static_cast<double>(p.rgb & 255U) / 255);
-    library().cairo_rectangle(c, p.from.x, p.from.y, p.to.x - p.from.x, p.to.y - p.from.y);
-    library().cairo_fill(c);
+    rectangle(c, p, pixels);
   }
   library().cairo_set_antialias(c, CAIRO_ANTIALIAS_DEFAULT);
   for (const Stroke& s : d.strokes) stroke(c, s);

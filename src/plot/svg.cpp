@@ -1,4 +1,5 @@
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 
 #include "base/escape.h"
@@ -65,11 +66,15 @@ std::string draw_svg(const Drawing& d, const std::string& title) {
   for (std::size_t k = 0; k < kColours; ++k)
     out += ".anholon-plot .s" + std::to_string(k) + "{stroke:var(--s" + std::to_string(k) + "," + kColour[k] + ")}\n";
   out += "</style>\n";
+  // The size of a patch is the difference of its rounded edges, so that patches that share an edge share it in the
+  // picture, too.
+  const auto rounded = [](double x) { return std::round(x * 100) / 100; };
   for (const Patch& p : d.patches) {
     char colour[8];
     std::snprintf(colour, sizeof colour, "#%06x", static_cast<unsigned>(p.rgb & 0xffffffU));
-    out += "<rect x=\"" + number(p.from.x) + "\" y=\"" + number(p.from.y) + "\" width=\"" + number(p.to.x - p.from.x) +
-           "\" height=\"" + number(p.to.y - p.from.y) + "\" fill=\"" + colour + "\" shape-rendering=\"crispEdges\"/>\n";
+    const Point from = {rounded(p.from.x), rounded(p.from.y)}, to = {rounded(p.to.x), rounded(p.to.y)};
+    out += "<rect x=\"" + number(from.x) + "\" y=\"" + number(from.y) + "\" width=\"" + number(to.x - from.x) +
+           "\" height=\"" + number(to.y - from.y) + "\" fill=\"" + colour + "\" shape-rendering=\"crispEdges\"/>\n";
   }
   for (const Stroke& s : d.strokes) out += "<path class=\"" + class_of(s) + "\" d=\"" + path(s.points) + "\"/>\n";
   for (const Word& word : d.words) {

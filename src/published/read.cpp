@@ -49,7 +49,13 @@ class Lines {
       if (entries.empty())
         return refuse(number, start, 1, "an indented line continues an equation, and there is none before it",
                       "start the line with its label: 4.1: x' = y");
-      if (!refused_) entries.back().add(line, {number, 1, 1});
+      if (refused_) return;
+      if (line.substr(0, line.find('#')).find(':') != std::string_view::npos)
+        return refuse(number, start, utf8_length(line.substr(start)),
+                      "an indented line continues the equation before it, and has no label",
+                      "a line that begins with a label begins without blanks: " +
+                          std::string(line.substr(start, kInHint)));
+      entries.back().add(line, {number, 1, 1});
       return;
     }
     if (const auto [name, equals] = definition(line); equals != std::string_view::npos) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "formula/habits.h"
 #include "modelfile/implied_units.h"
 
 namespace anholon {
@@ -205,12 +206,23 @@ static void must_be_no_state(const Model& model, const InitialName& of, const st
                     own);
 }
 
+// Returns the index of a coordinate. A name such as x_dot means a velocity.
+static std::size_t coordinate_with_value(const Model& model, const std::string& name, const std::string& called) {
+  const std::vector<std::string>& known = model.names.coordinates;
+  const auto varies = [&](const std::string& n) { return std::find(known.begin(), known.end(), n) != known.end(); };
+  if (!varies(name))
+    if (const std::string habit = habit_of_derivative(name, varies); !habit.empty())
+      throw Failure({}, called + "there is no coordinate '" + name + "'",
+                    habit + "; the coordinate" + (known.size() == 1 ? " is " : "s are ") + listed(known));
+  return coordinate_of(model, name, called);
+}
+
 void give(StateChoice& choice, const Model& model, const InitialName& of, const Constant& value,
           const std::string& called) {
   must_be_no_state(model, of, called);
   const unsigned determined = first_determined_order(model);
   const std::size_t index = of.multiplier ? place(model.names.multipliers, of.name, "constraint", called)
-                                          : coordinate_of(model, of.name, called);
+                                          : coordinate_with_value(model, of.name, called);
   if (of.multiplier && of.order + 2 >= determined)
     throw Failure({}, called + "multipliers follow from the state",
                   "they are initial data for constraints of order 3 and more");

@@ -43,7 +43,8 @@ center = "0"
 error: 'body' is a list in one place and [[body]] in another
 ```
 
-- All errors of a file are reported at once. An unknown key is an error, never skipped:
+- All errors of a file are reported at once, except those against TOML itself, such as a missing quote: the first of these is reported alone. An
+  unknown key is an error, never skipped:
 
 ```toml
 coordinate = ["x"]

@@ -166,15 +166,16 @@ void BodyReader::read_body(const Entry& e) {
   body.center = scope_.center(e.index, center->span);
   check_position(body.center, *center, "the position of " + what);
 
-  const Item* inertia = item.find("inertia");
-  const Item* axes = item.find("axes");
+  // Keys of bodies in a particle are reported as unknown keys.
+  const Item* inertia = e.particle ? nullptr : item.find("inertia");
+  const Item* axes = e.particle ? nullptr : item.find("axes");
   Expr mass_value = body.mass;
   if (const Item* mass = item.find("mass"))
     mass_value = scope_.number(*mass), body.mass = frozen(mass_value, body.name, mass->span);
   else if (e.particle)
     throw Failure(body.span, what + " has no mass", "mass = …");
 
-  if (const Item* both = item.find("angle"); both && item.find("orientation"))
+  if (const Item* both = item.find("angle"); both && item.find("orientation") && !e.particle)
     throw Failure(both->key_span, what + " has both 'angle' and 'orientation'",
                   "angle = a is orientation = \"rotz(a)\"");
   if (scope_.has_orientation(e.index)) {
@@ -182,7 +183,7 @@ void BodyReader::read_body(const Entry& e) {
     body.orientation = scope_.orientation(e.index, source.span);
     for (int k = 0; k < 3; ++k) check_position((*body.orientation)[k], source, "the orientation of " + what);
   }
-  if (const Item* shape = item.find("shape")) {
+  if (const Item* shape = e.particle ? nullptr : item.find("shape")) {
     body.shape = read_shape(*shape, scope_, model_);
     // A shape without a mass, or beside an inertia, only serves the picture.
     if (!inertia && !axes && !is_zero(mass_value)) shape_axes(body, mass_value, shape->span);

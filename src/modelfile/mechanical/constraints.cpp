@@ -107,7 +107,8 @@ void ConstraintReader::read(const Item& root) {
       settle();
       return;
     }
-    const Vector difference = evaluate_vector_side(left, sides[0]) - evaluate_vector_side(right, sides[1]);
+    const Vector difference =
+        evaluate_vector_side(left, sides[0], sides[1]) - evaluate_vector_side(right, sides[1], sides[0]);
     std::string dropped;
     std::vector<std::pair<std::string, Expr>> kept;
     int index = 0;
@@ -181,13 +182,13 @@ std::vector<Contact> ConstraintReader::switched() {
   return switched_;
 }
 
-Vector ConstraintReader::evaluate_vector_side(const Value& side, const Syntax& s) const {
+Vector ConstraintReader::evaluate_vector_side(const Value& side, const Syntax& s, const Syntax& other) const {
   const Value v = as_point(side, scope_, s.span);
   if (const Vector* a = std::get_if<Vector>(&v)) return *a;
   if (const Expr* e = std::get_if<Expr>(&v); e && is_zero(*e)) return zero_vector(*model_.graph);
   throw Failure(s.span, std::string("one side of the equation is a vector, the other is ") + type_name(v),
                 is_body(v)     ? body_hint(v, scope_)
-                : is_scalar(v) ? "0 is also the zero vector"
+                : is_scalar(v) ? hint_for_component(other, scope_)
                                : "");
 }
 

@@ -32,7 +32,7 @@ class ConstraintReader {
                       std::optional<Span> named = std::nullopt);
   // Removes the constraints from index `first` on from the model: they hold while the formula is positive.
   void switch_by(const Item& active, std::size_t first);
-  Vector evaluate_vector_side(const Value& side, const Syntax& s) const;
+  Vector evaluate_vector_side(const Value& side, const Syntax& s, const Syntax& other) const;
 
   Scope& scope_;
   Model& model_;

@@ -12,8 +12,8 @@ namespace anholon {
 void declare_controls(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
   const Item* section = find_section(root, "input", diagnostics);
   if (!section) return;
-  for (const Item& i : section->items)
-    collect(diagnostics, [&] {
+  for (const Item& i : section->items) {
+    const auto declare = [&] {
       Scope::Declaration d;
       d.role = Scope::Role::control;
       d.index = model.controls.size();
@@ -24,7 +24,9 @@ void declare_controls(const Item& root, Scope& scope, Model& model, Diagnostics&
       scope.declare(i.key, d);
       model.controls.push_back({i.key, std::nullopt, std::nullopt, i.key_span});
       model.names.controls.push_back(i.key);
-    });
+    };
+    if (!collect(diagnostics, declare)) scope.note_failed(i.key);
+  }
 }
 
 // Substitutes inputs in the formulas of other inputs until none is left.
@@ -60,12 +62,13 @@ static void close(Model& model, Diagnostics& diagnostics) {
 void read_controls(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
   const Item* section = root.find("input");
   if (!section || section->kind != Item::Kind::table) return;
-  for (const Item& i : section->items)
-    collect(diagnostics, [&] {
-      const auto u =
-          std::find_if(model.controls.begin(), model.controls.end(), [&](const Control& c) { return c.name == i.key; });
-      if (u != model.controls.end() && i.is_formula()) u->value = scope.number(i);
-    });
+  for (const Item& i : section->items) {
+    const auto u =
+        std::find_if(model.controls.begin(), model.controls.end(), [&](const Control& c) { return c.name == i.key; });
+    if (u == model.controls.end() || !i.is_formula()) continue;
+    // An input whose formula has an error is not an open one.
+    if (!collect(diagnostics, [&] { u->value = scope.number(i); })) u->value = model.graph->zero();
+  }
   close(model, diagnostics);
 }
 

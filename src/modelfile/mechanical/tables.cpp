@@ -107,9 +107,14 @@ class TableReader {
       throw Failure(place, "a table of more than " + std::to_string(kMostKnots) + " knots");
     for (std::size_t k = 1; k < table.x.size(); ++k)
       if (!(table.x[k - 1] < table.x[k]))
-        throw Failure(x ? x->items[k].span : place,
-                      file ? "the knots of a table ascend; that in " + lines_[k] + " does not"
-                           : "the knots of a table ascend; the " + std::to_string(k + 1) + ". does not");
+        throw Failure(
+            x ? x->items[k].span : place,
+            file ? "the knots of a table ascend; that in " + lines_[k] + " does not"
+                 : "the knots of a table ascend; the " + std::to_string(k + 1) + ". does not",
+            table.x[k - 1] == table.x[k]
+                ? "a knot has one value; a jump there is piecewise of two tables, piecewise(t < 1, a(t), b(t)), and "
+                  "steps alone are fit = \"hold\""
+                : "");
   }
 
   void declare(const Item& named, Table table) {
@@ -145,13 +150,16 @@ class TableReader {
 
   // Returns the text of a data file, which the source text of the model keeps.
   const std::string& text_of(const Item& file, const std::string& name, const std::filesystem::path& path) {
+    const std::string& model = model_.source_text.of(file.span).name;
     std::vector<SourceText>& known = model_.source_text.tables;
     const auto at = std::find_if(known.begin(), known.end(), [&](const SourceText& s) { return s.name == name; });
     if (at != known.end()) return at->text;
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
       throw Failure(file.span, "there is no file '" + path.string() + "'",
-                    "the name is relative to the file in which it stands");
+                    std::filesystem::exists(model, error)
+                        ? "the name is relative to the file in which it stands"
+                        : "the model is a text without a file: the name is relative to the working directory");
     if (std::filesystem::file_size(path, error) > kLargestFile)
       throw Failure(file.span, "the file '" + path.string() + "' is larger than 16 MiB");
     std::string text, why;

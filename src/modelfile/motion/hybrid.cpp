@@ -145,9 +145,11 @@ class EventReader {
 
 void declare_hybrid(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
   if (const Item* section = find_section(root, "state", diagnostics))
-    for (const Item& i : section->items) collect(diagnostics, [&] { declare_state(i, scope, model, diagnostics); });
+    for (const Item& i : section->items)
+      if (!collect(diagnostics, [&] { declare_state(i, scope, model, diagnostics); })) scope.note_failed(i.key);
   if (const Item* section = find_section(root, "mode", diagnostics))
-    for (const Item& i : section->items) collect(diagnostics, [&] { declare_mode(i, scope, model); });
+    for (const Item& i : section->items)
+      if (!collect(diagnostics, [&] { declare_mode(i, scope, model); })) scope.note_failed(i.key);
 }
 
 void read_states(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "formula/habits.h"
 #include "formula/indices.h"
+#include "modelfile/names/along.h"
 #include "modelfile/text/collect.h"
 #include "modelfile/text/keys.h"
 
@@ -95,6 +97,11 @@ class InitialReader {
     if (it != names.end()) return static_cast<std::size_t>(it - names.begin());
     if (const std::string members = members_known(name, names); !members.empty())
       throw Failure(span, std::string("there is no ") + what + " '" + name + "'" + members);
+    const auto varies = [&](const std::string& n) {
+      return &names == &model_.names.coordinates && std::find(names.begin(), names.end(), n) != names.end();
+    };
+    if (const std::string habit = habit_of_derivative(name, varies); !habit.empty())
+      throw Failure(span, std::string("there is no ") + what + " '" + name + "'", habit);
     const std::string near = did_you_mean(name, names);
     throw Failure(span, std::string("there is no ") + what + " '" + name + "'" +
                             (near.empty() ? "" : "; did you mean '" + near + "'?"));
@@ -197,12 +204,13 @@ class InitialReader {
             throw Failure(sides[side == &right].span, "this is not a number or vector",
                           "a multiplier is lambda.NAME, NAME being the constraint");
         if (is_scalar(left) && is_scalar(right)) return push(std::get<Expr>(left) - std::get<Expr>(right), "");
-        const auto side = [&](const Value& v, const Syntax& s) {
+        const auto side = [&](const Value& v, const Syntax& s, const Syntax& other) {
           if (const Vector* a = std::get_if<Vector>(&v)) return *a;
           if (const Expr* e = std::get_if<Expr>(&v); e && is_zero(*e)) return zero_vector(*model_.graph);
-          throw Failure(s.span, std::string("one side of the condition is a vector, the other is ") + type_name(v));
+          throw Failure(s.span, std::string("one side of the condition is a vector, the other is ") + type_name(v),
+                        is_scalar(v) ? hint_for_component(other, scope_) : "");
         };
-        const Vector residual = side(left, sides[0]) - side(right, sides[1]);
+        const Vector residual = side(left, sides[0], sides[1]) - side(right, sides[1], sides[0]);
         for (int i = 0; i < 3; ++i)
           if (!is_zero(residual[i])) push(residual[i], std::string(" (") + "xyz"[i] + ")");
       });

@@ -11,7 +11,12 @@ static constexpr long kMostRows = 5'000'000;  // a request for more rows is refu
 
 static Rational rational(const Item& i, Scope& scope) {
   const Expr e = scope.number(i);
-  if (!is_number(e)) throw Failure(i.span, "'" + i.key + "' is a plain number");
+  if (!is_number(e))
+    throw Failure(i.span, "'" + i.key + "' is a plain number",
+                  i.key != "to"
+                      ? ""
+                      : "a motion of a length that a formula tells ends with an event: [[event]] with when = \"t - (" +
+                            i.text() + ")\" and stop = true, and a number for 'to' that is larger");
   return number_value(e);
 }
 

@@ -52,6 +52,17 @@ std::vector<Direction> orthonormal_directions(const Item& along, Scope& scope) {
   return list;
 }
 
+std::string hint_for_component(const Syntax& vector, const Scope& scope) {
+  if (vector.op == Syntax::Op::member && vector.args[0].op == Syntax::Op::name)
+    if (const std::size_t* body = scope.find_body(vector.args[0].text); body && scope.has_orientation(*body))
+      return print(vector) + " is an axis of the body; the coordinate of its centre is " + vector.args[0].text +
+             ".center." + vector.text;
+  const bool short_enough = vector.op == Syntax::Op::name || vector.op == Syntax::Op::call ||
+                            vector.op == Syntax::Op::member || vector.op == Syntax::Op::prime;
+  const std::string v = short_enough ? print(vector) : "(" + print(vector) + ")";
+  return "an equation of numbers takes a component of the vector: " + v + ".x, or dot(" + print(vector) + ", ex)";
+}
+
 Expr component(const Vector& v, const Direction& d, int index) { return d.axis ? dot(v, *d.axis) : v[index]; }
 
 }  // namespace anholon

@@ -17,6 +17,9 @@ std::vector<Direction> directions(const Item* along, Scope& scope);
 // unchanged. Throws Failure, also if the directions are linearly dependent.
 std::vector<Direction> orthonormal_directions(const Item& along, Scope& scope);
 
+// Returns the hint for an equation whose one side is the vector of this formula and whose other side is a number.
+std::string hint_for_component(const Syntax& vector, const Scope& scope);
+
 Expr component(const Vector& v, const Direction& d, int index);
 
 }  // namespace anholon

@@ -74,7 +74,8 @@ const std::size_t* Scope::find_body(const std::string& name) const {
   return it == bodies_.end() ? nullptr : &it->second;
 }
 
-void Scope::unknown(const std::string& name, Span span) const {
+void Scope::refuse_unknown(const std::string& name, Span span) const {
+  if (failed_.count(name)) throw silent_failure();
   // If there are more failures, no names are suggested: they would not help, and take long.
   constexpr std::size_t kMostGuesses = 100;
   if (failures.size() > kMostGuesses) throw Failure(span, "unknown name '" + name.substr(0, 60) + "'");
@@ -381,7 +382,7 @@ Value Scope::name(const std::string& name, Span span) {
     return v;
   }
   if (const std::size_t* body = find_body(name)) return BodyName{*body};
-  unknown(name, span);
+  refuse_unknown(name, span);
 }
 
 std::vector<std::string> Scope::functions() const {

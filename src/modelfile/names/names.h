@@ -42,6 +42,10 @@ class Scope final : public Names {
   // is allowed).
   void declare(const std::string& name, Declaration d);
   void declare_body(const std::string& name, Span span);
+  // Notes that the declaration of the name failed, and that this was reported: its uses fail silently.
+  void note_failed(const std::string& name) { failed_.insert(name); }
+  // Throws the Failure of a name that nothing declares.
+  [[noreturn]] void refuse_unknown(const std::string& name, Span span) const;
   void set_gravity(const Item& field);
   std::size_t add_table(Table table);
   bool has_tables() const { return !tables_.empty(); }
@@ -130,6 +134,7 @@ class Scope final : public Names {
   std::optional<Vector> point(const BodyName& body, Span use) override;
   std::optional<Rotation> frame(const BodyName& body, Span use) override;
   std::string body_name(const BodyName& body) const override { return body_names_[body.index]; }
+  bool declares(const std::string& name) const override { return declarations_.count(name) > 0 || find_body(name); }
   void quaternion(const std::array<Expr, 4>& components, const Syntax& call) override {
     quaternions_.push_back({components, call.span});
   }
@@ -161,7 +166,6 @@ class Scope final : public Names {
   const Value& resolve(const std::string& name, Declaration& d, Span use);
   Value in_its_unit(Value v, const Declaration& d);
   Value evaluate_declaration(const std::string& name, Declaration& d);
-  [[noreturn]] void unknown(const std::string& name, Span span) const;
   Vector material_velocity(std::size_t body, const Vector& place, Span use);
   Vector inertial_rate(const Vector& v);
   bool speaks_of_multipliers();
@@ -172,7 +176,7 @@ class Scope final : public Names {
 
   Model& model_;
   std::map<std::string, Declaration> declarations_;
-  std::set<std::string> letters_;
+  std::set<std::string> letters_, failed_;
   std::map<std::string, std::size_t> bodies_;
   std::vector<std::string> body_names_;
   std::vector<Span> body_spans_;

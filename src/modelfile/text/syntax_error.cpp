@@ -222,10 +222,11 @@ Found formula_without_quotes(const Place& p) {
   return Failure(p.span, "a formula stands in quotes", p.key + " = \"" + p.value + "\"");
 }
 
-// Reports a formula without quotes within a list or a table in braces, such as x in [x, "y", 0].
+// Reports a formula without quotes within a list or a table in braces, such as x in [x, "y", 0] and 0.5*2 in {a = 0.5*2}.
 Found element_without_quotes(const Place& p) {
-  if (!p.says("could not determine value type") && !p.says("in decimal integer: expected digit") &&
-      !p.says("in array: expected comma"))
+  if (!p.says("could not determine value type") && !p.says("expected digit") && !p.says("expected decimal digit") &&
+      !p.says("in array: expected comma") && !p.says("expected exponent") && !p.says("in inline table: expected") &&
+      !p.says("in floating-point:") && !p.says("in decimal integer:"))
     return {};
   const std::size_t at = p.line.size() - p.rest.size();
   const std::size_t before = at == 0 ? std::string::npos : p.line.find_last_of("[{,=", at - 1);

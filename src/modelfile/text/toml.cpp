@@ -125,6 +125,21 @@ void check_depth(const SourceText& source) {
   }
 }
 
+// Returns the hint for the character c at s[i], which stands outside of quotes in this line.
+std::string hint_outside_quotes(const std::string& line, const std::string& s, std::size_t i, const std::string& c) {
+  for (const char* quote : {"“", "”", "„", "‟", "‘", "’", "‚", "«", "»", "″"})
+    if (c == quote) return "a text stands between straight quotes: \"…\"";
+  const std::size_t begin = s.rfind('\n', i) + 1;  // npos + 1 is 0
+  const std::size_t equals = line.find('=');
+  if (equals == std::string::npos || begin + equals > i)
+    return "a key with letters beyond A-Z stands in quotes: \"" + c + "\" = …";
+  std::size_t digits = i;
+  while (digits > begin && (std::isdigit(static_cast<unsigned char>(s[digits - 1])) || s[digits - 1] == '.')) --digits;
+  if (c == "°" && digits < i)
+    return "an angle stands in quotes, with its unit: \"" + s.substr(digits, i - digits) + " deg\"";
+  return "a formula stands in quotes: name = \"a*b\"";
+}
+
 // Refuses characters outside ASCII except in quotes and comments (a bare Greek key is the most likely mistake, and
 // toml++ 3.3 fails on it).
 void check_ascii(const SourceText& source) {
@@ -156,7 +171,7 @@ void check_ascii(const SourceText& source) {
       if (width == 1) throw Failure(Span{line, column, 1}, "this byte is no text");
       if (!(i == 0 && c == "\xEF\xBB\xBF"))
         throw Failure(Span{line, column, 1}, "'" + c + "' outside quotes",
-                      "a key with letters beyond A-Z stands in quotes: \"" + c + "\" = …");
+                      hint_outside_quotes(source.line(line), s, i, c));
     }
     column += static_cast<std::uint32_t>(step == width ? 1 : step);
     i += step;

@@ -88,6 +88,44 @@ TEST(Messages, AllErrorsAreReportedAtOnceInOrder) {
   EXPECT_NE(printed.find("^~~~~"), std::string::npos) << "the place is underlined";
 }
 
+std::vector<std::string> messages_of(const std::string& text, const Overrides& overrides = {}) {
+  std::vector<std::string> list;
+  for (const Diagnostic& d : diagnostics_of(text, overrides)) list.push_back(d.message);
+  return list;
+}
+
+// The names of formulas are looked at apart from their evaluation if a file has an error. A file without other mistakes
+// gets no further error: all its names are known.
+TEST(Messages, AnErrorInAGoodFileIsTheOnlyOne) {
+  for (const std::string& name : test::shipped_models()) {
+    Diagnostics d;
+    const std::string path = (test::source_dir() / "models" / (name + ".toml")).string();
+    read_model(SourceText{path, "no_such_key = 1\n" + test::file_text(path)}, d);
+    std::vector<std::string> errors;
+    for (const Diagnostic& one : d.list())
+      if (one.severity == Severity::error) errors.push_back(one.message);
+    ASSERT_EQ(errors.size(), 1U) << name << ": " << errors.back();
+    EXPECT_EQ(errors[0], "unknown key 'no_such_key' in the model file") << name;
+  }
+}
+
+TEST(Messages, AllUnknownNamesOfAFormulaAreReported) {
+  EXPECT_EQ(messages_of(test::replaced(kGood, "sin(theta)", "sin(th1)*cos(th2) + th1 + foo(th3)")),
+            (std::vector<std::string>{"unknown name 'th1'", "unknown name 'th2'", "unknown function 'foo'",
+                                      "unknown name 'th3'"}));
+  // Each element, also behind the mistake at which its reader stops.
+  EXPECT_EQ(messages_of(test::replaced(kGood, "mass = \"m\"", "mass = \"m1\"\nexpelled_velocity = \"w1*ex\"")),
+            (std::vector<std::string>{"unknown name 'm1'; did you mean 'm'?", "unknown name 'w1'"}));
+  // The arguments of a function are names in it; a name whose declaration has an error is no unknown name.
+  EXPECT_EQ(messages_of(test::replaced(kGood, "g = 9.81",
+                                       "g = 9.81\nk = {unit = \"m\"}\n[define]\nd = \"k*f(x)\"\n"
+                                       "[functions]\n\"f(h)\" = \"h + h0\"")),
+            (std::vector<std::string>{"the parameter 'k' has no value", "unknown name 'h0'"}));
+  // A value that is replaced is not looked at.
+  EXPECT_EQ(messages_of(test::replaced(kGood, "m = 2", "m = \"m1\"\nno = \"lost\""), {{"m", "3"}}),
+            (std::vector<std::string>{"unknown name 'lost'"}));
+}
+
 TEST(Messages, ABrokenDefinitionIsReportedOnceNotAtEveryUse) {
   const std::string text = "coordinates = [\"x\"]\n[define]\nh = \"q + 1\"\n[[particle]]\nname = \"p\"\nmass = "
                            "1\nposition = [\"h\", \"h\", \"h\"]\n";

@@ -1,7 +1,13 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <iterator>
 #include <limits>
+#include <set>
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "base/diagnostic.h"
 #include "plot/heat_map.h"
@@ -132,6 +138,90 @@ TEST(HeatMap, PaintsEachCellInItsPlace) {
   EXPECT_GT(low.from.y, high.from.y);
   EXPECT_NEAR(low.to.x, high.from.x, 1e-9);
   EXPECT_NE(draw_svg(d, "falls").find("<rect"), std::string::npos);
+}
+
+// The map of columns x rows cells of different values, and the place of its cells in points.
+struct Map {
+  Drawing drawing;
+  Point from{1e9, 1e9}, to{0, 0};
+};
+Map map_of(int columns, int rows, double width, double height) {
+  NamedColumn x{"x", "", {}}, y{"y", "", {}}, v{"v", "", {}};
+  for (int k = 0; k < rows; ++k)
+    for (int i = 0; i < columns; ++i)
+      x.values.push_back(i + 1), y.values.push_back(k + 1), v.values.push_back(i + 2 * k);
+  HeatMap m = make_heat_map(x, y, v, {});
+  m.width = width, m.height = height;
+  Map map{lay_out(m), {1e9, 1e9}, {0, 0}};
+  constexpr std::size_t kScale = 64;  // the patches of the scale of colours, which come first
+  for (std::size_t k = kScale; k < map.drawing.patches.size(); ++k) {
+    const Patch& p = map.drawing.patches[k];
+    map.from = {std::min(map.from.x, p.from.x), std::min(map.from.y, p.from.y)};
+    map.to = {std::max(map.to.x, p.to.x), std::max(map.to.y, p.to.y)};
+  }
+  return map;
+}
+
+// Returns the number of white pixels inside the map; -1 if cairo cannot read pictures here.
+int white_pixels(const Map& map, void* cairo) {
+  const auto find = [&](auto*& function, const char* name) {
+    function = reinterpret_cast<std::decay_t<decltype(function)>>(dlsym(cairo, name));
+    return function != nullptr;
+  };
+  void* (*read)(const char*) = nullptr;
+  const unsigned char* (*data_of)(void*) = nullptr;
+  int (*stride_of)(void*) = nullptr;
+  void (*destroy)(void*) = nullptr;
+  if (!find(read, "cairo_image_surface_create_from_png") || !find(data_of, "cairo_image_surface_get_data") ||
+      !find(stride_of, "cairo_image_surface_get_stride") || !find(destroy, "cairo_surface_destroy"))
+    return -1;
+  const std::string path = ::testing::TempDir() + "anholon-map-" + std::to_string(getpid()) + ".png";
+  EXPECT_EQ(draw_cairo(map.drawing, "", CairoFormat::png, path), "");
+  void* picture = read(path.c_str());
+  std::remove(path.c_str());
+  const unsigned char* data = data_of(picture);
+  if (!data) return -1;
+  constexpr double kPixels = 200.0 / 72;
+  constexpr int kFrame = 3;  // pixels of the frame
+  int white = 0;
+  for (int y = static_cast<int>(map.from.y * kPixels) + kFrame; y < static_cast<int>(map.to.y * kPixels) - kFrame; ++y)
+    for (int x = static_cast<int>(map.from.x * kPixels) + kFrame; x < static_cast<int>(map.to.x * kPixels) - kFrame;
+         ++x) {
+      const unsigned char* pixel = data + y * stride_of(picture) + 4 * x;
+      white += pixel[0] == 255 && pixel[1] == 255 && pixel[2] == 255;
+    }
+  destroy(picture);
+  return white;
+}
+
+TEST(HeatMap, ShowsNoPaperBetweenCells) {
+  void* cairo = no_cairo().empty() ? dlopen("libcairo.so.2", RTLD_NOW | RTLD_LOCAL) : nullptr;
+  if (!cairo) GTEST_SKIP() << "cairo is not here";
+  for (const auto& [width, height] : {std::pair{14.0, 9.0}, {16.0, 11.0}, {9.3, 7.1}})
+    for (int n = 1; n < 40; n += 2)
+      EXPECT_EQ(white_pixels(map_of(n, n + 2, width, height), cairo), 0)
+          << n << " columns, " << width << " cm x " << height << " cm";
+  dlclose(cairo);
+}
+
+// In an SVG, too, the cells above and beside a cell begin where it ends, to the last decimal.
+TEST(HeatMap, HasCellsThatMeetInAnSvg) {
+  for (int n = 2; n < 20; ++n) {
+    const std::string svg = draw_svg(map_of(n, n + 2, 14, 9).drawing, "");
+    std::set<long> starts, ends;
+    for (std::size_t at = svg.find("<rect"); at != std::string::npos; at = svg.find("<rect", at + 1)) {
+      double x = 0, y = 0, width = 0, height = 0;
+      ASSERT_EQ(std::sscanf(svg.c_str() + at, "<rect x=\"%lf\" y=\"%lf\" width=\"%lf\" height=\"%lf\"", &x, &y, &width,
+                            &height),
+                4);
+      starts.insert(std::lround(100 * x));
+      ends.insert(std::lround(100 * (x + width)));
+    }
+    // All columns but the first one begin where another one ends; so does none of the scale of colours.
+    std::vector<long> alone;
+    std::set_difference(starts.begin(), starts.end(), ends.begin(), ends.end(), std::back_inserter(alone));
+    EXPECT_EQ(alone.size(), 2U) << n;
+  }
 }
 
 }  // namespace anholon::plot::heat_map_test
