@@ -138,6 +138,7 @@ TEST(SecondOpinion, OnAFormWhosePivotsVanish) {
     SimulationOptions o = options_for(k, *motion.scenario.model);
     o.to = Rational(20);
     o.every = Rational(5);
+    o.tolerance = Rational(1, 10'000'000'000);  // at 1e-9 IDA is off by 1e-6 after 20 s
     const SimulationReport r = simulate(motion.scenario, o, motion.rows);
     ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
     EXPECT_GT(r.eliminations, 0U);
