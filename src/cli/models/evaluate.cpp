@@ -133,6 +133,7 @@ int evaluate(const SystemCommand& o) {
     hand_out(json(s, report));
   else
     print_text(s, report, o.digits());
+  for (const std::string& text : notes_of_redundancy(s)) say(stderr, "note: %s\n", text.c_str());
   return kOk;
 }
 
