@@ -94,7 +94,7 @@ std::optional<Diagnostic> not_integrated(const Model& model) {
 std::vector<std::string> notes_of_redundancy(const Scenario& s) {
   const Model& m = *s.model;
   std::vector<std::string> list, names;
-  for (const std::size_t r : s.redundant) names.push_back(m.constraints[r].name);
+  for (const std::size_t r : s.redundant) names.push_back("'" + m.constraints[r].name + "'");
   if (!names.empty())
     list.push_back((names.size() == 1 ? "constraint " : "constraints ") + joined_names(names) +
                    (names.size() == 1 ? " depends on the others at the initial state: it is"

@@ -187,10 +187,10 @@ std::string note_of_shared_force(const Model& m, const SharedForces& shared, con
                                  bool least) {
   return multiplier_names(m, group) + " are not determined one by one, because these constraints " + share(group) +
          ": the columns have " +
-         (least ? "the smallest ones that give it (least norm), which depend on how the equations are scaled"
+         (least ? "the smallest ones with these forces (least norm), which depend on how the equations are scaled"
                 : "0 for those that are left out") +
-         "; the sums that make up a force, N, reaction(B) and the motion are determined, and each multiplier is with " +
-         remedy(m, shared, group);
+         "; the sums that make up a force, N, reaction(B) and the motion are determined; with " +
+         remedy(m, shared, group) + " the equations determine each multiplier";
 }
 
 std::string note_of_formula(const Model& m, const SharedForces& shared, const InitialState<double>& state,
@@ -199,7 +199,7 @@ std::string note_of_formula(const Model& m, const SharedForces& shared, const In
   const Change change(m, state, f.formula);
   std::set<std::size_t> held;
   for (const NodeId id : symbols({&f.formula, 1}))
-    if (const Node& n = m.graph->node(id); is_multiplier(n)) held.insert(n.index);
+    if (const Node& n = f.formula.graph->node(id); is_multiplier(n)) held.insert(n.index);
   std::vector<std::size_t> found;
   for (const Dependency& d : shared.dependencies) {
     if (d.empty() || std::none_of(held.begin(), held.end(), [&](std::size_t r) { return takes_part(d, r); })) continue;
