@@ -91,6 +91,22 @@ def test_multipliers_of_dependent_constraints_are_left_out() -> None:
             model.dynamics(minimal=False, outputs={"own": f"lambda.c{name[1]}"})
 
 
+def test_determined_multipliers_beside_dependent_constraints_are_outputs() -> None:
+    model = an.loads("""
+        coordinates = ["x", "z"]
+        particle = [{name = "a", mass = 2, position = ["x", "0", "z"]}]
+        force = [{on = "a", vector = "3*ex - 20*ez"}]
+        constraint = [{name = "floor", equation = "z = 0"}, {name = "stop", equation = "vel(a) = 0"}]
+    """)
+    f = model.dynamics(minimal=False, outputs={"side": "lambda.stop.x"})
+    np.testing.assert_allclose(f.output(0, f.start), [-3])
+    for held in ("lambda.floor", "lambda.stop.z"):
+        with pytest.raises(an.ModelError, match="depend on one another"):
+            model.dynamics(minimal=False, outputs={"load": held})
+    notes = model.check().notes
+    assert any("lambda.floor and lambda.stop.z are not determined one by one" in note for note in notes)
+
+
 def test_outputs_hold_forces_of_the_mode() -> None:
     gears = GEARS.format(decides="mode = {gear = 2}", active="gear - 1.5") + 'monitor = {L = "lambda.v2"}'
     model = an.loads(gears).in_mode("gear=2")

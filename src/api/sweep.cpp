@@ -9,6 +9,7 @@
 #include "base/read_file.h"
 #include "ensemble/parts/judgement.h"
 #include "ensemble/parts/scenarios.h"
+#include "ensemble/reduce/reduction_notes.h"
 #include "observe/rows/quantity_units.h"
 
 namespace anholon::v1 {
@@ -160,6 +161,10 @@ Result<Sweep> computed(const PreparedSweep& p) {
     before += piece.options.cases;
   }
   data->notes = inner::notes_without_value(data->report, {});
+  for (const PreparedPiece& piece : p.pieces)
+    for (std::string& text : inner::notes_of_formulas(*piece.scenario, piece.options.reductions))
+      if (std::find(data->notes.begin(), data->notes.end(), text) == data->notes.end())
+        data->notes.push_back(std::move(text));
   for (const auto& [kind, stopped] : data->stopped) data->notes.push_back(inner::stopped_note(kind, stopped));
   return Sweep(std::move(data));
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "contact/contact_faults.h"
+#include "contact/kept_gaps.h"
 #include "contact/law/accumulation.h"
 #include "contact/law/consistent_modes.h"
 #include "contact/law/impact.h"
@@ -49,6 +50,7 @@ class HybridMotion {
     if (Outcome o = all_pass_zero(*s_.model, bodies_.contacts); !o.ok())
       return joined_.report(std::move(o), bodies_.at.t.get_d(), 0);
     Outcome outcome = faults_.inside_at_start();
+    if (outcome.ok()) bodies_.look(), outcome = kept_by_constraints(s_, bodies_);
     constexpr std::size_t kMostSegments = 100'000;
     for (std::size_t k = 0; outcome.ok() && bodies_.at.t < end_; ++k) {
       if (k == kMostSegments)

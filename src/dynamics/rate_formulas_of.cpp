@@ -241,10 +241,11 @@ class Builder {
   }
 
   // True for the multipliers of constraints that depend on one another: they follow from the motion by a choice, which
-  // these formulas do not make.
+  // these formulas do not make. The formulas hold for all states.
   bool is_undetermined(Expr e) const {
     const Node& n = e.graph->node(e.id);
-    return !s_.redundant.empty() && n.kind == Kind::multiplier && !s_.model->constraints[n.index].by;
+    return n.kind == Kind::multiplier && !s_.shared.determined_everywhere(n.index) &&
+           !s_.model->constraints[n.index].by;
   }
 
   Workspace& s_;

@@ -93,6 +93,8 @@ class Watch {
   std::size_t times() const { return times_; }
   // True if there are redundant constraints, which have to follow from the others.
   bool any_redundant() const { return redundant_.any(); }
+  // The dependencies of the constraints at the last point that was seen.
+  SharedForces shared() const { return redundant_.shared(); }
   // Fails if they do not follow any more.
   Outcome still_redundant(const Expansion<W>& point, SimulationReport& report);
   // The monitors of the model, then the integrals.

@@ -3,33 +3,22 @@
 #include <algorithm>
 
 #include "mechanics/work.h"
-#include "structure/stage.h"
 
 namespace anholon {
 
 namespace {
-
-// If there are more constraints, those that make one redundant are not searched.
-constexpr std::size_t kManyConstraints = 60;
 
 Hypothesis hypothesis(const ConstraintClass& c, int order) {
   if (order >= 2) return Hypothesis::niu;
   return order == 1 && c.kind == "nonlinear" ? Hypothesis::chetaev : Hypothesis::dalembert;
 }
 
-// Returns the independent constraints without which row r would be independent as well.
-std::vector<std::size_t> made_of(const Scenario& s, std::size_t r, PointValues& at) {
-  const std::size_t n = s.mechanics->q.size();
+// Returns the constraints of which a redundant one is a combination.
+std::vector<std::size_t> made_of(const SharedForces& shared, std::size_t r) {
   std::vector<std::size_t> out;
-  if (s.independent.size() > kManyConstraints) return out;
-  for (std::size_t left_out : s.independent) {
-    std::vector<std::size_t> rows = s.independent;
-    *std::find(rows.begin(), rows.end(), left_out) = r;
-    Matrix<double> phi(rows.size(), n);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      for (std::size_t a = 0; a < n; ++a) phi(i, a) = at(put_masses(*s.model, s.mechanics->Phi[rows[i]][a]));
-    if (choose_rows(phi, kDependent).independent.size() == rows.size()) out.push_back(left_out);
-  }
+  for (std::size_t k = 0; k < shared.redundant.size(); ++k)
+    for (std::size_t i = 0; shared.redundant[k] == r && i < shared.dependencies[k].size(); ++i)
+      if (i != r && shared.dependencies[k][i] != 0) out.push_back(i);
   return out;
 }
 
@@ -48,11 +37,10 @@ const char* name(Hypothesis h) {
 }
 
 std::vector<ConstraintFacts> constraint_facts(Workspace& s) {
-  PointValues at = values_near(*s.model, parameter_values<double>(*s.model), s.state);
   std::vector<ConstraintFacts> list;
   for (std::size_t r = 0; r < s.classes.size(); ++r) {
     ConstraintFacts c{hypothesis(s.classes[r], s.mechanics->order[r]), power_factor(*s.mechanics, r), {}};
-    if (s.classes[r].redundant) c.follows_from = made_of(s, r, at);
+    if (s.classes[r].redundant) c.follows_from = made_of(s.shared, r);
     list.push_back(std::move(c));
   }
   return list;

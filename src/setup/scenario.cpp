@@ -91,6 +91,22 @@ std::optional<Diagnostic> not_integrated(const Model& model) {
   return std::nullopt;
 }
 
+std::vector<std::string> notes_of_redundancy(const Scenario& s) {
+  const Model& m = *s.model;
+  std::vector<std::string> list, names;
+  for (const std::size_t r : s.redundant) names.push_back("'" + m.constraints[r].name + "'");
+  if (!names.empty())
+    list.push_back((names.size() == 1 ? "constraint " : "constraints ") + joined_names(names) +
+                   (names.size() == 1 ? " depends on the others at the initial state: it is"
+                                      : " depend on the others at the initial state: they are") +
+                   " left out of the equations, and watched");
+  for (const std::vector<std::size_t>& group : s.shared.groups())
+    list.push_back(note_of_shared_force(m, s.shared, group, multiplier_orders(s) == 0));
+  for (const NamedFormula& f : formulas_with_multipliers(m))
+    if (const std::string text = note_of_formula(m, s.shared, s.state, f); !text.empty()) list.push_back(text);
+  return list;
+}
+
 int multiplier_orders(const Scenario& s) {
   if (!s.routh) return 0;
   int highest = 0;
@@ -142,16 +158,13 @@ ProbeHints hints_at(const InitialState<double>& state) {
   return hints;
 }
 
-// Chooses independent constraints at the state; those that follow from them are left out, with a note.
-static void choose_constraints(const Model& model, const std::vector<double>& parameters, Scenario& s) {
+// Chooses independent constraints at the state; those that follow from them are left out.
+static void choose_constraints(const std::vector<double>& parameters, Scenario& s) {
   IndependentConstraints rows = independent_constraints(*s.mechanics, parameters, s.state);
+  s.shared = shared_forces(*s.mechanics, parameters, s.state, rows);
   s.independent = std::move(rows.independent);
   s.redundant = std::move(rows.redundant);
-  for (std::size_t r : s.redundant) {
-    s.classes[r].redundant = true;
-    s.notes.push_back("constraint '" + model.constraints[r].name +
-                      "' depends on the others at the initial state: it is left out, and watched");
-  }
+  for (std::size_t r : s.redundant) s.classes[r].redundant = true;
 }
 
 // Refuses a start with a number beyond double, a deformed body, or a negative mass.
@@ -259,8 +272,9 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
   if (initial.ok() && numbers) initial = admissible(*model, parameters, s.state);
   s.independent.clear();
   s.redundant.clear();
+  s.shared = {};
   if (initial.ok() && numbers)
-    choose_constraints(*model, parameters, s);
+    choose_constraints(parameters, s);
   else
     for (std::size_t r = 0; r < model->constraints.size(); ++r) s.independent.push_back(r);
   if (initial.ok() && numbers && may_need_completion(*model)) initial = complete(problem, s);
@@ -282,6 +296,7 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
   if (structured.ok()) smooth_enough(s), drop_absent(s.system, s.structure);
   const std::string large_angles = note_of_large_angles(s.system, s.state, s.given_nodes, choice.overrides);
   if (!large_angles.empty()) s.notes.push_back(large_angles);
+  for (std::string& text : notes_of_redundancy(s)) s.notes.push_back(std::move(text));
   if (!initial.ok()) return initial;
   if (!structured.ok()) return structured;
   // Masses and forces that depend on accelerations, and coordinates without inertia, may also need more.
@@ -317,7 +332,7 @@ std::optional<Outcome> begin_anew(Workspace& s, const StateChoice& choice) {
 }
 
 Workspace::Workspace(const Scenario& from) : own_model_(clone(*from.model)) {
-  const auto& [model_of, nodes, mechanics_of, classes_of, start_of, state_of, independent_of, redundant_of,
+  const auto& [model_of, nodes, mechanics_of, classes_of, start_of, state_of, independent_of, redundant_of, shared_of,
                elimination_of, system_of, structure_of, routh_of, routh_structure_of, notes_of] = from;
   static_cast<void>(model_of);
   const auto own = [&](auto& part) {
@@ -345,6 +360,7 @@ Workspace::Workspace(const Scenario& from) : own_model_(clone(*from.model)) {
   state = state_of;
   independent = independent_of;
   redundant = redundant_of;
+  shared = shared_of;
   elimination = elimination_of.of(*mechanics);
   own(elimination);
   system = *own_system(system_of);
@@ -359,8 +375,8 @@ void Workspace::set_parameter(std::size_t parameter, const Rational& value) {
 }
 
 void for_each_expression(Scenario& s, const ExprVisitor& f) {
-  auto& [model, given_nodes, mechanics, classes, start, state, independent, redundant, elimination, system, structure,
-         routh, routh_structure, notes] = s;
+  auto& [model, given_nodes, mechanics, classes, start, state, independent, redundant, shared, elimination, system,
+         structure, routh, routh_structure, notes] = s;
   for_each_expression(const_cast<Model&>(*model), f);
   for_each_expression(*mechanics, f);
   if (start) for_each_expression(const_cast<StartPlan&>(*start), f);
@@ -369,8 +385,8 @@ void for_each_expression(Scenario& s, const ExprVisitor& f) {
   if (routh) for_each_expression(const_cast<System&>(*routh), f);
   // The other members hold numbers and words.
   static_cast<void>(given_nodes), static_cast<void>(classes), static_cast<void>(state);
-  static_cast<void>(independent), static_cast<void>(redundant), static_cast<void>(structure);
-  static_cast<void>(routh_structure), static_cast<void>(notes);
+  static_cast<void>(independent), static_cast<void>(redundant), static_cast<void>(shared);
+  static_cast<void>(structure), static_cast<void>(routh_structure), static_cast<void>(notes);
 }
 
 std::shared_ptr<Model> given_model(const Scenario& s) { return clone(*s.model, s.given_nodes); }

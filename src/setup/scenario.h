@@ -8,6 +8,7 @@
 #include "modelfile/read.h"
 #include "program/expansion.h"
 #include "setup/eliminate.h"
+#include "setup/shared_forces.h"
 #include "structure/consistent.h"
 #include "tape/bind.h"
 
@@ -42,6 +43,7 @@ struct Scenario {
   std::shared_ptr<const StartPlan> start;  // null without numbers
   InitialState<double> state;              // consistent, in double
   std::vector<std::size_t> independent, redundant;
+  SharedForces shared;      // of the redundant constraints
   Elimination elimination;  // the elimination of forms without multipliers
   System system;
   Structure structure;
@@ -91,6 +93,10 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
 // other values (`choice`, for the same symbols as those with which it was made). Returns nullopt if the equations do
 // not hold for the new state because other constraints are independent: make_scenario then makes them anew.
 std::optional<Outcome> begin_anew(Workspace& s, const StateChoice& choice = {});
+
+// Returns a note on the constraints that are left out, notes on the multipliers that the equations do not determine one
+// by one, and on the formulas of the model that hold them; none if no constraint is redundant.
+std::vector<std::string> notes_of_redundancy(const Scenario& scenario);
 
 // Returns how many derivatives of the multipliers belong to the state or are solved for, in forms with multipliers.
 int multiplier_orders(const Scenario& scenario);

@@ -89,6 +89,11 @@ class ReportWriter {
       number("until", *e.until);
       j_.key("reason").string("the second run stopped: " + e.stopped);
     }
+    if (!e.undetermined.empty()) {
+      j_.key("undetermined").open_array();
+      for (const std::string& name : e.undetermined) j_.string(name);
+      j_.close();
+    }
     j_.key("means").string(e.means);
   }
 
@@ -269,6 +274,9 @@ ErrorReport error_report(const Fields& f) {
   each(f.at("kinds"), [&](const Fields& k) { e.kinds.push_back(kind_error(k)); });
   if (e.kinds.empty()) e.kinds.push_back(kind_error(f));
   e.means = f.text("means");
+  if (const auto& list = f.at("undetermined"); list.is_array())
+    for (const Json& n : list)
+      if (n.is_string()) e.undetermined.push_back(n.get<std::string>());
   if (f.has("lost_from")) e.lost = f.number("lost_from"), e.lost_of = f.text("lost_of");
   if (f.has("until")) {
     constexpr std::string_view kStopped = "the second run stopped: ";

@@ -52,6 +52,7 @@ class RunReport {
     warn(warnings_of_jumps<N>(of_.course, of_.watch, of_.options, set));
     if (const auto warning = of_.rows.warning()) r.warnings.push_back(*warning);
     of_.judge.estimate(of_.course, of_.quadratures, of_.rows.waiting(), r);
+    if (of_.watch.any_redundant()) fill_undetermined();
   }
 
  private:
@@ -94,6 +95,26 @@ class RunReport {
       });
     }
     for (const std::string& text : of_.floors->notes()) note(text);
+  }
+
+  // Names the multipliers that are not determined at the start or at the end. The start has notes of its own.
+  void fill_undetermined() {
+    const Scenario& s = of_.s;
+    const SharedForces end = of_.watch.shared();
+    std::vector<std::size_t> all, later;
+    for (std::size_t r = 0; r < s.model->constraints.size(); ++r) {
+      const bool first = !s.shared.group_of(r).empty(), last = !end.group_of(r).empty();
+      if (first || last) all.push_back(r);
+      if (last && !first) later.push_back(r);
+    }
+    if (!later.empty())
+      note("at the end also " + multiplier_names(*s.model, later) + (later.size() == 1 ? " is" : " are") +
+           " not determined: constraints that depend on one another share forces");
+    for (const NamedFormula& f : formulas_with_multipliers(*s.model))
+      if (note_of_formula(*s.model, s.shared, s.state, f).empty())
+        if (const std::string text = note_of_formula(*s.model, end, s.state, f); !text.empty()) note(text);
+    if (of_.report.error)
+      for (const std::size_t r : all) of_.report.error->undetermined.push_back(multiplier_name(*s.model, r));
   }
 
   void fill_watched() {

@@ -115,6 +115,7 @@ class Run {
     if (!schedule().every_step() && !schedule().due_at(schedule().start())) watch_.count_start();
     if (Outcome o = motion().within_bounds(schedule().forward()); !o.ok()) return o;
     if (Outcome o = follow_beside_start(s_); !o.ok()) return o;
+    for (const std::string& text : notes_of_redundancy(s_)) add_note(report_, o_, text);
     if (schedule().forward())
       for (const std::string& text : passed_limits(*s_.model, motion())) add_note(report_, o_, text);
     return {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "expr/generic_point.h"
 #include "structure/stage.h"
@@ -40,6 +41,12 @@ class OrthonormalRows {
         for (std::size_t a = 0; a < v.size(); ++a) v[a] -= dot * e[a];
       }
     return v;
+  }
+  // Returns the components of v along the basis.
+  std::vector<double> components(const std::vector<double>& v) const {
+    std::vector<double> list;
+    for (const std::vector<double>& e : basis_) list.push_back(std::inner_product(e.begin(), e.end(), v.begin(), 0.0));
+    return list;
   }
   void add(std::vector<double> v) {
     const double l = length(v);
@@ -95,10 +102,69 @@ IndependentConstraints choose_independent(const Matrix<double>& phi, const std::
   return choice;
 }
 
-IndependentConstraints independent_constraints(const Mechanics& m, const std::vector<double>& parameters,
-                                               const InitialState<double>& state) {
+namespace {
+
+// The independent rows that are not zero, at length 1, as combinations of an orthonormal basis: rows = T * basis.
+struct Triangle {
+  std::vector<std::size_t> rows;  // their indices
+  OrthonormalRows basis;
+  std::vector<std::vector<double>> inverse;  // the columns of T^-1
+};
+
+Triangle triangle(const std::vector<std::vector<double>>& unit_rows, const std::vector<std::size_t>& independent) {
+  Triangle of;
+  std::vector<std::vector<double>> t;
+  for (const std::size_t i : independent) {
+    if (!(length(unit_rows[i]) > 0)) continue;
+    of.rows.push_back(i);
+    of.basis.add(of.basis.beyond(unit_rows[i]));
+    t.push_back(of.basis.components(unit_rows[i]));
+  }
+  const std::size_t r = of.rows.size();
+  for (std::size_t j = 0; j < r; ++j) {
+    std::vector<double> column(r, 0);
+    for (std::size_t i = j; i < r; ++i) {
+      double sum = i == j ? 1 : 0;
+      for (std::size_t k = j; k < i; ++k) sum -= t[i][k] * column[k];
+      column[i] = sum / t[i][i];
+    }
+    of.inverse.push_back(std::move(column));
+  }
+  return of;
+}
+
+}  // namespace
+
+std::vector<Dependency> dependencies(const Matrix<double>& phi, const IndependentConstraints& choice) {
+  std::vector<Dependency> list;
+  if (choice.redundant.empty()) return list;
+  std::vector<std::vector<double>> unit(phi.rows);
+  std::vector<double> lengths(phi.rows);
+  for (std::size_t i = 0; i < phi.rows; ++i) {
+    unit[i].assign(&phi.data[i * phi.cols], &phi.data[i * phi.cols] + phi.cols);
+    lengths[i] = length(unit[i]);
+    if (lengths[i] > 0)
+      for (double& x : unit[i]) x /= lengths[i];
+  }
+  const Triangle of = triangle(unit, choice.independent);
+  for (const std::size_t r : choice.redundant) {
+    Dependency& d = list.emplace_back();
+    if (!(lengths[r] > 0) || length(of.basis.beyond(unit[r])) > kDependent) continue;
+    d.assign(phi.rows, 0.0);
+    d[r] = 1 / lengths[r];
+    const std::vector<double> along = of.basis.components(unit[r]);
+    for (std::size_t j = 0; j < of.rows.size(); ++j) {
+      // A row takes part if the redundant row is not, up to kDependent, in the span of the other independent rows.
+      const double multiple = std::inner_product(along.begin(), along.end(), of.inverse[j].begin(), 0.0);
+      if (std::abs(multiple) > kDependent * length(of.inverse[j])) d[of.rows[j]] = -multiple / lengths[of.rows[j]];
+    }
+  }
+  return list;
+}
+
+Matrix<double> constraint_rows(const Mechanics& m, const std::vector<double>& parameters,
+                               const InitialState<double>& state) {
   const std::size_t s = m.phi.size(), n = m.q.size();
-  if (s == 0) return {};
   Column es;
   for (const Column& row : m.Phi)
     for (Expr e : row) es.push_back(put_masses(*m.model, e));
@@ -112,7 +178,13 @@ IndependentConstraints independent_constraints(const Mechanics& m, const std::ve
   Matrix<double> phi(s, n);
   for (std::size_t i = 0; i < s; ++i)
     for (std::size_t a = 0; a < n; ++a) phi(i, a) = machine.value(i * n + a);
-  return choose_independent(phi, m.order);
+  return phi;
+}
+
+IndependentConstraints independent_constraints(const Mechanics& m, const std::vector<double>& parameters,
+                                               const InitialState<double>& state) {
+  if (m.phi.empty()) return {};
+  return choose_independent(constraint_rows(m, parameters, state), m.order);
 }
 
 template <Number N>

@@ -16,11 +16,23 @@ struct IndependentConstraints {
   std::size_t weakest_row = 0;  // and the index of that row
 };
 
+// Multiples of the rows of Phi, one for each row, whose sum is zero; 0 for a row that takes no part. If they are added to
+// the multipliers, N stays as it is: the multipliers of the rows that take part are not determined one by one.
+using Dependency = std::vector<double>;
+
 // Chooses independent rows: constraints of lower order before those of higher order, which may be their derivatives,
 // otherwise in the order of the file, and rows far from the span of others before nearer ones. A zero row is a
 // singularity of its constraint, not a redundancy: it counts as independent, and the system Jacobian shows the
 // singularity.
 IndependentConstraints choose_independent(const Matrix<double>& phi, const std::vector<int>& order);
+
+// Returns one dependency for each redundant row: its own, with the independent rows from which it follows; empty if it
+// does not follow from them, at another state than that of the choice.
+std::vector<Dependency> dependencies(const Matrix<double>& phi, const IndependentConstraints& choice);
+
+// Returns the rows Phi of the constraints at a state; values that the state does not hold are arbitrary.
+Matrix<double> constraint_rows(const Mechanics& m, const std::vector<double>& parameters,
+                               const InitialState<double>& state);
 
 // Chooses independent constraints at a state; values that the state does not hold (accelerations that are not yet
 // found) are arbitrary.

@@ -1,6 +1,8 @@
 #include "cli/input.h"
 #include "cli/models/check_report.h"
 #include "cli/models/show.h"
+#include "contact/kept_gaps.h"
+#include "modelfile/contacts.h"
 #include "motion/start.h"
 
 namespace anholon::cli {
@@ -12,6 +14,8 @@ int check(const SystemCommand& asked) {
   Scenario s;
   Outcome outcome = ready(in, form(o, *in.model), state_choice(o, *in.model), s);
   if (outcome.ok() && !not_integrated(*in.model)) outcome = regular_at_start(s);
+  if (outcome.ok() && o.mode.empty() && !not_integrated(*in.model))
+    outcome = kept_by_constraints(s, contacts(*in.names));
   if (!o.show.empty()) return show(o, s, outcome);
   Workspace own(s);
   const Explanation x = explain(own);
@@ -20,7 +24,7 @@ int check(const SystemCommand& asked) {
   else
     check_text(own, x, outcome);
   if (outcome.ok()) return kOk;
-  print_outcome(outcome);
+  print_outcome(outcome, in.source);
   return kStopped;
 }
 

@@ -133,6 +133,8 @@ int evaluate(const SystemCommand& o) {
     hand_out(json(s, report));
   else
     print_text(s, report, o.digits());
+  for (const std::string& text : o.quiet ? std::vector<std::string>() : notes_of_redundancy(s))
+    say(stderr, "note: %s\n", text.c_str());
   return kOk;
 }
 

@@ -87,26 +87,12 @@ void events(const SimulationReport& r, const Units& units) {
     say(stderr, "… and %zu more events (all of them with --json)\n", r.events.size() - kMostLines);
 }
 
-// Notes the constraints that depend on others at the initial state, in the words of `check`.
-void redundant(const Scenario& s) {
-  constexpr std::size_t kNamed = 8;
-  std::string list;
-  for (std::size_t k = 0; k < s.redundant.size() && k < kNamed; ++k)
-    list += (k ? ", " : "") + s.model->constraints[s.redundant[k]].name;
-  const bool one = s.redundant.size() == 1;
-  if (s.redundant.size() > kNamed) list += ", …";
-  if (!list.empty())
-    say(stderr, "note: constraint%s %s on the others at the initial state: %s left out, and watched\n", one ? "" : "s",
-        (list + (one ? " depends" : " depend")).c_str(), one ? "it is" : "they are");
-}
-
 }  // namespace
 
 void print_report(const Scenario& s, const SimulationReport& r, const Units& units, bool goes_on) {
   std::fflush(stdout);
   // `check` prints the notes that concern the model itself; here only those of the state follow.
   for (const std::string& n : s.state.notes) say(stderr, "note: %s\n", n.c_str());
-  redundant(s);
   const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
   std::string looked_at = r.rows_looked_at < r.rows
                               ? ", at " + std::to_string(r.rows_looked_at) + " of " + std::to_string(r.rows) + " rows"

@@ -17,6 +17,7 @@
 #include "ensemble/case_scenario.h"
 #include "ensemble/parts/judgement.h"
 #include "ensemble/parts/scenarios.h"
+#include "ensemble/reduce/reduction_notes.h"
 #include "ensemble/request.h"
 #include "ensemble/variation.h"
 #include "ensemble/with_contacts.h"
@@ -128,6 +129,8 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   if (const auto d = not_integrated(*p.in.model)) throw UsageError{print(*d, p.in.source)};
   if (!o.show.empty()) return false;
   if (!p.start.ok()) scenario_of_cases(e, p.scenario);
+  if (p.start.ok() && !p.asked.quiet)
+    for (const std::string& text : notes_of_formulas(p.scenario, e.reductions)) asker().note(text);
   ask(o.motion, p.scenario, asker(), e);
   try {
     if (o.mode.empty()) move_with(contacts(*p.in.names), e);

@@ -251,6 +251,10 @@ set = {caught = 1}
 - A vector equation gives `name.x`, `name.y`, `name.z` along ex, ey, ez. With `along = "B"` the components are those along the axes
   of the frame or body B; with `along = ["v1", "v2"]` those along these vectors, `name.1`, `name.2`. Components that vanish identically are dropped with a
   note. `0` is also the zero vector.
+- Constraints that depend on one another share forces, such as `z = R` and the normal component of a rolling condition `vel(P) = 0`. Their multipliers
+  are not determined one by one: notes name them, rows have the least ones, which depend on how the equations are scaled, and `reaction(B)` and the
+  motion are determined. `along` in the vector equation, with the directions that count, leaves one constraint for each direction. A
+  contact whose gap another constraint keeps is refused.
 - With `one_sided = true` the left side may become larger than the right one: the constraint opens where its force would pull, and closes again
   without rebound. It is a [contact](#contact) without friction, with its events and columns (`NAME.leaves`, `NAME.normal`), and
   `lambda.NAME` is its force, as that of a contact.

@@ -245,7 +245,15 @@ std::string without_size_of_pull(std::string note) {
 
 SupportWatch::SupportWatch(const Scenario& s, std::vector<Support> supports) : s_(s), start_(to_double(s.state.t)) {
   for (const Support& support : supports) {
-    loads_.emplace_back(support);
+    Load& load = loads_.emplace_back(support);
+    const std::vector<std::size_t> group = s.shared.group_of(support.constraint);
+    const auto left_out = [&](std::size_t r) {
+      return std::find(s.redundant.begin(), s.redundant.end(), r) != s.redundant.end();
+    };
+    // The rows are parallel if all follow from a single one.
+    if (group.size() == static_cast<std::size_t>(std::count_if(group.begin(), group.end(), left_out)) + 1)
+      for (const std::size_t r : group)
+        if (r != support.constraint) load.parallel.push_back(r);
     if (support.kind != Support::Kind::floor) varying_.push_back(support.constraint);
   }
 }
@@ -290,7 +298,8 @@ std::string SupportWatch::note(const Load& l) const {
         begin + kCarriesWeight + s_.model->bodies[support.body].name + "' at the start, and its force is turned round" +
         since + ": a rod, a wire or a guide bears that, and a surface would have to pull; where it can only push, ";
     if (support.rolls.empty())
-      return text + "one_sided = true in the constraint lets it open, with the equation " + c.equation + turned;
+      return text + "one_sided = true in the constraint lets it open, with the equation " + c.equation + turned +
+             others_that_hold(support.constraint);
     text += "a [[contact]] with its gap and slip in place of the constraints '" + c.name + "'";
     for (const std::string& name : support.rolls) text += ", '" + name + "'";
     return text + " lets it open";
@@ -298,7 +307,18 @@ std::string SupportWatch::note(const Load& l) const {
   return begin + kLooks + (support.kind == Support::Kind::floor ? "floor" : "ground") + " and pulls" +
          (support.level ? " down" : "") + since +
          ": a body that may lift would leave it; one_sided = true in the constraint lets it open, with the equation " +
-         c.equation + turned;
+         c.equation + turned + others_that_hold(support.constraint);
+}
+
+// The second step of the advice: the other constraints that hold the direction of this one must not hold it either.
+std::string SupportWatch::others_that_hold(std::size_t constraint) const {
+  std::vector<std::size_t> others = s_.shared.group_of(constraint);
+  std::erase(others, constraint);
+  if (others.empty()) return {};
+  std::vector<std::string> names;
+  for (const std::size_t r : others) names.push_back("'" + s_.model->constraints[r].name + "'");
+  return ", together with " + without_constraints(*s_.model, others, true) + ", because " + joined_names(names) +
+         (others.size() > 1 ? " hold" : " holds") + " the same direction";
 }
 
 std::vector<std::string> SupportWatch::notes() const {

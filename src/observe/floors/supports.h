@@ -46,12 +46,12 @@ class SupportWatch {
  public:
   SupportWatch(const Scenario& s, std::vector<Support> supports);
   bool any() const { return !loads_.empty(); }
-  // multiplier(r): the multiplier of constraint r; `numbers`: the columns of a row after t, which begin with the
-  // coordinates.
+  // multiplier(r): the multiplier of constraint r, the least one with the same forces if constraints depend on one
+  // another; `numbers`: the columns of a row after t, which begin with the coordinates.
   template <class F, class N>
   void see(double t, F multiplier, const std::vector<N>& numbers) {
     for (Load& l : loads_) {
-      const double force = l.support.upwards * multiplier(l.support.constraint);
+      const double force = l.support.upwards * l.whole(multiplier);
       if (!l.see(t, force)) continue;
       if (l.support.kind == Support::Kind::floor) {
         l.pull(t, force);
@@ -88,10 +88,22 @@ class SupportWatch {
   static constexpr std::size_t kAllRows = 1024, kOneOf = 16;  // of the rows at which a support pulls
   struct Load {
     explicit Load(const Support& s) : support(s) {}
+    // Returns the multiplier that the support would have if it alone held its direction. Constraints with parallel rows,
+    // Phi_k = c_k Phi_r, share its force: sum c_k lambda_k, and the least multipliers have c_k = lambda_k / lambda_r.
+    template <class F>
+    double whole(F multiplier) const {
+      const double own = multiplier(support.constraint);
+      double sum = own;
+      for (const std::size_t k : parallel)
+        if (const double other = multiplier(k); own != 0) sum += other / own * other;
+      return sum;
+    }
     // Returns true if the support pulls.
     bool see(double t, double force);
     void pull(double t, double force);
     Support support;
+    std::vector<std::size_t>
+        parallel;  // the other constraints that hold its direction, if their rows are parallel to its own
     bool any = false, carries = false;  // a row has been seen; the support carries weight at the start
     double largest = 0;                 // the largest force
     double least = 0, least_t = 0;      // the strongest pull
@@ -99,6 +111,7 @@ class SupportWatch {
   };
   double length_of_gradient(const Support& support, double t);
   std::string note(const Load& l) const;
+  std::string others_that_hold(std::size_t constraint) const;
 
   const Scenario& s_;
   double start_;

@@ -92,6 +92,7 @@ TractionWatch::TractionWatch(const Scenario& s, const std::optional<Translations
   const auto names = rolling_constraints(own, *found);
   if (!names || names->empty() || !outside_is_known(own, *found)) return;
   names_ = *names;
+  find_what_holds_the_normal(own, *found);
   const Column outputs = force_of_floor(*own.model);
   Tape tape = compile(outputs);
   for (const Input& in : tape.inputs) {
@@ -141,13 +142,34 @@ std::string TractionWatch::rolling() const {
   return (names_.size() > 1 ? "constraints " : "constraint ") + list;
 }
 
+void TractionWatch::find_what_holds_the_normal(const Workspace& s, const Translations& found) {
+  Column across;
+  for (const Translation& t : found.all)
+    if (std::abs(dot(t.along, normal_)) > kSameRate * norm(t.along))
+      across.push_back(s.model->graph->jet(static_cast<std::uint32_t>(t.coordinate), 1));
+  for (std::size_t r = 0; r < s.model->constraints.size() && !across.empty(); ++r) {
+    if (s.model->constraints[r].order != 1) continue;
+    const Column slopes = gradient(put_masses(*s.model, s.mechanics->phi[r]), across);
+    if (!std::all_of(slopes.begin(), slopes.end(), [](Expr e) { return proved_zero(e); })) hold_normal_.push_back(r);
+  }
+}
+
+// What a [[contact]] needs to open: the height as a coordinate that no other constraint holds.
+std::string TractionWatch::how_to_lift() const {
+  if (hold_normal_.empty()) return "with the height as a coordinate";
+  std::vector<std::string> names;
+  for (const std::size_t r : hold_normal_) names.push_back("'" + s_.model->constraints[r].name + "'");
+  return "together with " + without_constraints(*s_.model, hold_normal_, level_) + ", because " + joined_names(names) +
+         (names.size() > 1 ? " hold" : " holds") + " the direction in which it opens";
+}
+
 std::vector<std::string> TractionWatch::notes() const {
   std::vector<std::string> list;
   if (pulls_ && !has_floor_)
     list.push_back("the floor under " + rolling() + (level_ ? " pulls down" : " pulls") +
                    " from t = " + number_text(*pulls_, 6) + " on, at most with " + number_text(-least_, 3) +
                    " at t = " + number_text(least_t_, 6) +
-                   ": a wheel would lift off; write what touches as a [[contact]], with the height as a coordinate");
+                   ": a wheel would lift off; write what touches as a [[contact]], " + how_to_lift());
   if (above_)
     list.push_back(rolling() + (names_.size() > 1 ? " need" : " needs") +
                    " a friction above 1 from t = " + number_text(*above_, 6) + " on, at least " +

@@ -58,9 +58,12 @@ class TractionWatch {
   static constexpr std::size_t kAllRows = 4096, kOneOf = 8;
   void look(double t);
   std::string rolling() const;  // the names of the constraints
+  std::string how_to_lift() const;
+  void find_what_holds_the_normal(const Workspace& s, const Translations& found);
 
   const Scenario& s_;
   std::vector<std::string> names_;
+  std::vector<std::size_t> hold_normal_;  // those of them that hold the normal direction, too
   bool has_floor_, level_ = true;
   Triple normal_;
   std::optional<Tape> tape_;

@@ -31,6 +31,8 @@ struct ErrorReport {
   std::string stopped;           // the reason of that end
   std::optional<double> lost;    // the time from which no digits of the motion are left
   std::string lost_of;           // the column that lost its digits first
+  // The multipliers that the equations do not determine one by one: their digits are those of a choice.
+  std::vector<std::string> undetermined = {};
   const KindError& worst() const;
   // Takes, for each kind, the larger error of the two.
   void take_worse(const ErrorReport& other);

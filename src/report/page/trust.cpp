@@ -4,6 +4,7 @@
 #include "numeric/number.h"
 #include "report/markup.h"
 #include "report/page/sections.h"
+#include "simulation/report_text.h"
 
 namespace anholon {
 
@@ -21,7 +22,7 @@ std::string digits(const SimulationReport& r) {
     list += (list.empty() ? "" : ", ") + std::string(name(k.kind)) + " " + std::to_string(k.digits);
   if (r.error->until)
     list += ", up to t = " + number_text(*r.error->until, 6) + " (the second run stopped: " + r.error->stopped + ")";
-  return list + ", by " + r.error->means;
+  return list + ", by " + r.error->means + not_vouched_for(*r.error);
 }
 
 // `units`: of columns, and of "conserved NAME", as far as they are known.

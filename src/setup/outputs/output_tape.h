@@ -128,11 +128,15 @@ class LeastMultipliers {
   LeastMultipliers(Workspace& s, const std::vector<N>& parameters);
   // Returns the multipliers of all constraints of the model at a point.
   std::vector<N> at(const Expansion<N>& point);
+  // Returns the dependencies of the constraints at the last point, and those that are left out there; none before.
+  SharedForces shared() const;
   void set_parameters(const std::vector<N>& parameters) { phi_.set_parameters(parameters); }
 
  private:
   std::size_t coordinates_, constraints_;
   OutputTape<N> phi_;  // the rows of all constraints
+  Matrix<N> rows_;     // their values at the last point
+  std::vector<std::size_t> kept_;
 };
 
 extern template class LeastMultipliers<double>;

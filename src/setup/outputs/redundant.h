@@ -23,6 +23,8 @@ class Redundant {
   // Returns the multipliers of all constraints of the model, with the same N: the least ones if multipliers are not
   // part of the state, else zeros for the constraints that are left out (theory: dae-view).
   std::vector<W> multipliers(const Expansion<W>& point);
+  // Returns the dependencies at the last point of which the least multipliers were computed; none before.
+  SharedForces shared() const { return least_ ? least_->shared() : SharedForces(); }
 
   void set_parameters(const std::vector<W>& parameters) {
     if (outputs_) outputs_->set_parameters(parameters), least_->set_parameters(parameters);

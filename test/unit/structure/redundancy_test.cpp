@@ -89,5 +89,37 @@ TEST(LeastMultipliers, AreTheLeastWithTheSameForces) {
   EXPECT_NEAR(2 * lambda[0] + lambda[1] / 2 - lambda[2], 0, 1e-14);
 }
 
+// The third row follows from the first alone, and the last two from the second and the fourth.
+TEST(Dependencies, HaveTheRowsThatTakePart) {
+  Matrix<double> phi(5, 3);
+  phi(0, 0) = 1e6, phi(1, 1) = 3, phi(2, 0) = 2, phi(3, 2) = 1, phi(4, 1) = 6, phi(4, 2) = -1;
+  IndependentConstraints choice;
+  choice.independent = {0, 1, 3}, choice.redundant = {2, 4};
+  const std::vector<Dependency> list = dependencies(phi, choice);
+  ASSERT_EQ(list.size(), 2U);
+  for (const Dependency& d : list)
+    for (std::size_t a = 0; a < 3; ++a) {
+      double sum = 0;
+      for (std::size_t i = 0; i < 5; ++i) sum += d[i] * phi(i, a);
+      EXPECT_NEAR(sum, 0, 1e-15);
+    }
+  const auto rows = [](const Dependency& d) {
+    Indices of;
+    for (std::size_t i = 0; i < d.size(); ++i)
+      if (d[i] != 0) of.push_back(i);
+    return of;
+  };
+  EXPECT_EQ(rows(list[0]), (Indices{0, 2}));
+  EXPECT_EQ(rows(list[1]), (Indices{1, 3, 4}));
+}
+
+TEST(Dependencies, AreEmptyForARowThatDoesNotFollow) {
+  Matrix<double> phi(2, 2);
+  phi(0, 0) = 1, phi(1, 0) = 1, phi(1, 1) = 1e-3;
+  IndependentConstraints choice;
+  choice.independent = {0}, choice.redundant = {1};
+  EXPECT_TRUE(dependencies(phi, choice)[0].empty());
+}
+
 }  // namespace
 }  // namespace anholon::redundancy_test
