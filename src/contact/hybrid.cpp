@@ -50,14 +50,15 @@ class HybridMotion {
       return joined_.report(std::move(o), bodies_.at.t.get_d(), 0);
     Outcome outcome = faults_.inside_at_start();
     constexpr std::size_t kMostSegments = 100'000;
-    for (std::size_t k = 0; outcome.ok() && bodies_.at.t < end_; ++k) {
+    // A motion that ends where it begins has its modes and one row, too.
+    for (std::size_t k = 0; outcome.ok() && (bodies_.at.t < end_ || k == 0); ++k) {
       if (k == kMostSegments)
         outcome = told({OutcomeKind::interrupted, "more than 100000 changes of the contacts" + at_time(now()),
                         "end the motion earlier"},
                        now());
       else
         faults_.name_angles(outcome = choose());
-      if (outcome.ok() && slips_->waits()) {
+      if (outcome.ok() && slips_->waits() && bodies_.at.t < end_) {
         if (!slips_->wait(outcome)) break;
         continue;
       }
@@ -348,7 +349,7 @@ class HybridMotion {
     const long double least = kPart * Rational(end_ - bodies_.at.t).get_d();
     const bool any = std::any_of(bodies_.contacts.begin(), bodies_.contacts.end(),
                                  [](const Contact& c) { return c.slip.size() == 2 && c.rough(); });
-    while (any && order_ > kLowest && least_time(order_) > least) o_.order = --order_;
+    while (any && least > 0 && order_ > kLowest && least_time(order_) > least) o_.order = --order_;
   }
 
   Outcome impact() {
