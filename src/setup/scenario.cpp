@@ -147,10 +147,13 @@ static void choose_constraints(const Model& model, const std::vector<double>& pa
   IndependentConstraints rows = independent_constraints(*s.mechanics, parameters, s.state);
   s.independent = std::move(rows.independent);
   s.redundant = std::move(rows.redundant);
+  for (std::size_t r : rows.vanishing) s.classes[r].vanishes = true;
   for (std::size_t r : s.redundant) {
     s.classes[r].redundant = true;
     s.notes.push_back("constraint '" + model.constraints[r].name +
-                      "' depends on the others at the initial state: it is left out, and watched");
+                      (s.classes[r].vanishes
+                           ? "' vanishes identically with these values of the parameters: it is left out"
+                           : "' depends on the others at the initial state: it is left out, and watched"));
   }
 }
 
@@ -312,7 +315,9 @@ std::optional<Outcome> begin_anew(Workspace& s, const StateChoice& choice) {
                                        choice.t,          nullptr,    s.start.get()};
   if (Outcome o = consistent_state(problem, s.state); !o.ok()) return o;
   if (Outcome o = admissible(*s.model, parameters, s.state); !o.ok()) return o;
-  if (independent_constraints(*s.mechanics, parameters, s.state).independent != s.independent) return std::nullopt;
+  const IndependentConstraints rows = independent_constraints(*s.mechanics, parameters, s.state);
+  const auto vanish = std::count_if(s.classes.begin(), s.classes.end(), [](const auto& c) { return c.vanishes; });
+  if (rows.independent != s.independent || static_cast<long>(rows.vanishing.size()) != vanish) return std::nullopt;
   return Outcome{};
 }
 

@@ -87,17 +87,26 @@ void events(const SimulationReport& r, const Units& units) {
     say(stderr, "… and %zu more events (all of them with --json)\n", r.events.size() - kMostLines);
 }
 
-// Notes the constraints that depend on others at the initial state, in the words of `check`.
+// Notes the constraints that are left out, in the words of `check`.
 void redundant(const Scenario& s) {
   constexpr std::size_t kNamed = 8;
-  std::string list;
-  for (std::size_t k = 0; k < s.redundant.size() && k < kNamed; ++k)
-    list += (k ? ", " : "") + s.model->constraints[s.redundant[k]].name;
-  const bool one = s.redundant.size() == 1;
-  if (s.redundant.size() > kNamed) list += ", …";
-  if (!list.empty())
-    say(stderr, "note: constraint%s %s on the others at the initial state: %s left out, and watched\n", one ? "" : "s",
-        (list + (one ? " depends" : " depend")).c_str(), one ? "it is" : "they are");
+  for (const bool vanish : {true, false}) {
+    std::string list;
+    std::size_t count = 0;
+    for (std::size_t r : s.redundant) {
+      if (s.classes[r].vanishes != vanish || ++count > kNamed) continue;
+      list += (count > 1 ? ", " : "") + s.model->constraints[r].name;
+    }
+    const bool one = count == 1;
+    if (count > kNamed) list += ", …";
+    const std::string which = (one ? " " : "s ") + list;
+    if (count > 0 && vanish)
+      say(stderr, "note: constraint%s %s identically with these values of the parameters: %s left out\n", which.c_str(),
+          one ? "vanishes" : "vanish", one ? "it is" : "they are");
+    else if (count > 0)
+      say(stderr, "note: constraint%s %s on the others at the initial state: %s left out, and watched\n", which.c_str(),
+          one ? "depends" : "depend", one ? "it is" : "they are");
+  }
 }
 
 }  // namespace

@@ -250,7 +250,7 @@ set = {caught = 1}
   pushes towards a growing left side. `check` states the hypothesis that reactions are ideal.
 - A vector equation gives `name.x`, `name.y`, `name.z` along ex, ey, ez. With `along = "B"` the components are those along the axes
   of the frame or body B; with `along = ["v1", "v2"]` those along these vectors, `name.1`, `name.2`. Components that vanish identically are dropped with a
-  note. `0` is also the zero vector.
+  note; those that vanish with the values of the parameters, as `s*x' = 0` with s = 0, are left out, and their multipliers are 0. `0` is also the zero vector.
 - With `one_sided = true` the left side may become larger than the right one: the constraint opens where its force would pull, and closes again
   without rebound. It is a [contact](#contact) without friction, with its events and columns (`NAME.leaves`, `NAME.normal`), and
   `lambda.NAME` is its force, as that of a contact.
