@@ -159,7 +159,7 @@ Result<Sweep> computed(const PreparedSweep& p) {
     data->outcome = to_public(report.outcome);
     before += piece.options.cases;
   }
-  data->notes = inner::notes_without_value(data->report, {});
+  data->notes = inner::notes_on_cases(data->report, {});
   for (const auto& [kind, stopped] : data->stopped) data->notes.push_back(inner::stopped_note(kind, stopped));
   return Sweep(std::move(data));
 }

@@ -255,7 +255,7 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
   const std::vector<double> parameters = parameter_values<double>(*model);
   // Without formulas for all given functions there are no numbers, but there is a structure.
   const bool numbers = model->unknown_functions.empty();
-  s.start = numbers ? std::make_shared<StartPlan>(*s.mechanics, std::vector<StateOverride>{}) : nullptr;
+  s.start = numbers ? std::make_shared<StartPlan>(*s.mechanics) : nullptr;
   const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides,
                                        choice.t,          nullptr,    s.start.get()};
   Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
