@@ -58,7 +58,7 @@ class HybridMotion {
                        now());
       else
         faults_.name_angles(outcome = choose());
-      if (outcome.ok() && slips_->waits() && bodies_.at.t < end_) {
+      if (outcome.ok() && slips_->waits()) {
         if (!slips_->wait(outcome)) break;
         continue;
       }
