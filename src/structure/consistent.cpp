@@ -182,7 +182,6 @@ std::vector<bool> StateSolver<N>::positions_of_options() const {
 template <Number N>
 bool StateSolver<N>::release(const Stage<N>& stage, const Contradiction<N>& c, std::vector<bool>& kept) {
   ReplacedByOptions<N>& replaced = state_.replaced;
-  const std::vector<Node> options = options_in(stage, c);
   bool any = false;
   for (std::size_t j : c.given) {
     const Node& n = stage.unknown(j);
@@ -193,26 +192,24 @@ bool StateSolver<N>::release(const Stage<N>& stage, const Contradiction<N>& c, s
       replaced.values.push_back({n, *state_.value(n)});
     }
   }
+  if (any) {
+    for (const Node& n : options_in(stage, c))
+      if (std::none_of(replaced.options.begin(), replaced.options.end(),
+                       [&](const Node& o) { return o.kind == n.kind && o.index == n.index && o.order == n.order; }))
+        replaced.options.push_back(n);
+    return true;
+  }
   const auto of_options_alone = [&](std::size_t i) {
     for (std::size_t j = 0; j < stage.unknowns(); ++j)
       if (stage.holds(i, j) && !overridden(stage.unknown(j))) return false;
     return true;
   };
-  for (std::size_t i : c.equations) {
-    if (any || !stage.equation(i).condition || !kept[i] || !of_options_alone(i)) continue;
-    kept[i] = false;
-    replaced.conditions.push_back(stage.equation(i).what);
-  }
-  any = any || std::any_of(c.equations.begin(), c.equations.end(), [&](std::size_t i) { return !kept[i]; });
-  for (const Node& n : options)
-    if (any && std::none_of(replaced.options.begin(), replaced.options.end(), [&](const Node& o) {
-          return o.kind == n.kind && o.index == n.index && o.order == n.order;
-        }))
-      replaced.options.push_back(n);
+  for (std::size_t i : c.equations)
+    if (stage.equation(i).condition && kept[i] && of_options_alone(i)) kept[i] = false, any = true;
   return any;
 }
 
-// Notes the values and conditions of the file that options replace, in place of an earlier note.
+// Notes the values of the file that options replace, in place of an earlier note.
 template <Number N>
 void StateSolver<N>::say_replaced() {
   constexpr std::size_t kNamed = 8;
@@ -224,7 +221,6 @@ void StateSolver<N>::say_replaced() {
     const auto [old, now] = told_apart(was, is);
     parts.push_back(entry_name(n) + " = " + old + (parts.empty() ? " is replaced by " : " by ") + now);
   }
-  for (const std::string& condition : replaced.conditions) parts.push_back(condition + " is left out");
   if (parts.empty()) return;
   std::string text, options;
   for (std::size_t k = 0; k < std::min(parts.size(), kNamed); ++k) text += (k ? ", " : "") + parts[k];

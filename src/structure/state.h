@@ -34,14 +34,14 @@ struct ReplacedValue {
   N before{0};
 };
 
-// The values and conditions of the file that clash with values of options, and the note on them.
+// The values of the file that clash with values of options, and the note on them. Conditions on values of options alone
+// are replaced as values of the file for the same entries are, without a note.
 template <Number N>
 struct ReplacedByOptions {
   std::vector<ReplacedValue<N>> values;
-  std::vector<std::string> conditions;  // these are left out
-  std::vector<Node> options;            // values that they clash with
-  std::string note;                     // empty if every value stays; also among the notes of the state
-  std::optional<std::size_t> place;     // its index there
+  std::vector<Node> options;         // values that they clash with
+  std::string note;                  // empty if every value stays; also among the notes of the state
+  std::optional<std::size_t> place;  // its index there
 };
 
 template <Number N>
