@@ -146,6 +146,7 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     o.state = of.choice;
     const auto data = std::shared_ptr<Run::Data>(new Run::Data{system, {}, {}, {}, {}, {}, {}, {}});
     const inner::Asker asker{"", "", [&](const std::string& note) { data->notes.push_back(note); }};
+    if (const std::string& replaced = s.state.replaced.note; !replaced.empty()) data->notes.push_back(replaced);
     inner::ask(inner::merged(settings_of(asked), s.model->simulate), s, asker, o);
     if (asked.dense) keep_polynomials(*data, *s.model, o);
     o.cancelled = asked.cancelled;

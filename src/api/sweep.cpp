@@ -160,7 +160,7 @@ Result<Sweep> computed(const PreparedSweep& p) {
     data->outcome = to_public(report.outcome);
     before += piece.options.cases;
   }
-  data->notes = inner::notes_without_value(data->report, {});
+  data->notes = inner::notes_on_cases(data->report, {});
   for (const PreparedPiece& piece : p.pieces)
     for (std::string& text : inner::notes_of_formulas(*piece.scenario, piece.options.reductions))
       if (std::find(data->notes.begin(), data->notes.end(), text) == data->notes.end())

@@ -241,7 +241,7 @@ Result<FolderDone> SweepFolder::fill(const FolderWork& work) const {
     }
     const inner::Filled done = inner::fill(store, tabled.pieces, o);
     return FolderDone{done.parts, done.report.done, done.parts == o.parts.size(),
-                      inner::notes_without_value(done.report, {}), done.error};
+                      inner::notes_on_cases(done.report, {}), done.error};
   });
 }
 

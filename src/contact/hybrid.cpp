@@ -52,7 +52,8 @@ class HybridMotion {
     Outcome outcome = faults_.inside_at_start();
     if (outcome.ok()) bodies_.look(), outcome = kept_by_constraints(s_, bodies_);
     constexpr std::size_t kMostSegments = 100'000;
-    for (std::size_t k = 0; outcome.ok() && bodies_.at.t < end_; ++k) {
+    // A motion that ends where it begins has its modes and one row, too.
+    for (std::size_t k = 0; outcome.ok() && (bodies_.at.t < end_ || k == 0); ++k) {
       if (k == kMostSegments)
         outcome = told({OutcomeKind::interrupted, "more than 100000 changes of the contacts" + at_time(now()),
                         "end the motion earlier"},
@@ -350,7 +351,7 @@ class HybridMotion {
     const long double least = kPart * Rational(end_ - bodies_.at.t).get_d();
     const bool any = std::any_of(bodies_.contacts.begin(), bodies_.contacts.end(),
                                  [](const Contact& c) { return c.slip.size() == 2 && c.rough(); });
-    while (any && order_ > kLowest && least_time(order_) > least) o_.order = --order_;
+    while (any && least > 0 && order_ > kLowest && least_time(order_) > least) o_.order = --order_;
   }
 
   Outcome impact() {

@@ -239,7 +239,8 @@ SimulationOptions ModeSegments::asked_of_stretch(const Rational& to, const Ratio
 
 bool ModeSegments::by_bdf(const Rational& to) {
   const Rational least(1, 1'000'000'000'000), first = std::max(o_.tolerance, least), most = 1000 * first;
-  if (o_.method != Method::automatic || looks_for_events_ || std::exchange(events_near_, false)) return false;
+  if (o_.method != Method::automatic || looks_for_events_ || std::exchange(events_near_, false) || bodies_.at.t == to)
+    return false;
   const std::optional<long double> time = stiff_for(bodies_, Rational(to - bodies_.at.t).get_d());
   if (!time) return false;
   Rational end = std::min(to, Rational(bodies_.at.t.get_d() + static_cast<double>(*time)));

@@ -127,6 +127,10 @@ bool SlipStart::lets_wait(std::size_t c, const std::vector<long double>& acceler
   }
   const long double speed = std::max(bodies_.dynamics.speed(), 1.0L);
   const long double a = bodies_.dynamics.slip_acceleration(c, accelerations);
+  if (bodies_.at.t == end_) {  // the row at the start of a motion without length
+    waits_ = {c, 0};
+    return true;
+  }
   const long double time = Rational(later(std::min(kFirst * speed / a, kLongest / speed)) - bodies_.at.t).get_d();
   if (!(a * time > kSeed * speed)) return false;
   waits_ = {c, time};

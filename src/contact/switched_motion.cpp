@@ -33,7 +33,8 @@ class SwitchedMotion {
     Outcome outcome;
     constexpr std::size_t kMostSegments = 100'000, kMostAtOnce = 16;
     std::size_t at_once = 0;
-    for (std::size_t k = 0; outcome.ok() && at_.t < end_; ++k) {
+    // A motion that ends where it begins has one row, too.
+    for (std::size_t k = 0; outcome.ok() && (at_.t < end_ || k == 0); ++k) {
       const Rational before = at_.t;
       if (k == kMostSegments)
         outcome = told({OutcomeKind::interrupted, "more than 100000 changes of the modes" + at_time(now()),

@@ -71,6 +71,7 @@ struct CaseResult {
   std::vector<double> reduced;       // the values of the reductions, over the motion as far as it came; may be empty
   bool without_polynomials = false;  // BDF computed a part of the motion: reductions of formulas have no values
   std::string event;                 // the event that ended the motion; empty if none did
+  std::string replaced;              // the note on initial values of the file that give way to those that are given
 };
 
 class CaseSink {
@@ -104,13 +105,24 @@ struct CasesWithoutValue {
   void add(const CasesWithoutValue& more) { all += more.all, without_polynomials += more.without_polynomials; }
 };
 
+// The cases in which initial values of the file give way to values that are given or vary.
+struct CasesReplaced {
+  std::size_t cases = 0;
+  std::string note;  // of the first of them
+  void add(const CasesReplaced& more) {
+    if (cases == 0) note = more.note;
+    cases += more.cases;
+  }
+};
+
 struct EnsembleReport {
   Outcome outcome;  // interrupted, or finished; cases may have stopped either way
   std::size_t done = 0, finished = 0;
   std::map<std::string, std::size_t> events;               // finished cases by the event that ended them
   std::map<std::string, CasesWithoutValue> without_value;  // by the reduction
-  std::size_t in_workspaces = 0;                           // cases that were not computed by the shared tapes
-  std::size_t most_held = 0;                               // the largest number of results that were in memory at once
+  CasesReplaced replaced;
+  std::size_t in_workspaces = 0;  // cases that were not computed by the shared tapes
+  std::size_t most_held = 0;      // the largest number of results that were in memory at once
   std::size_t threads = 0;
   double seconds = 0;
   CasesError error;

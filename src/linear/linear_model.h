@@ -43,6 +43,7 @@ struct LinearModel {
   Matrix<Multi> A, B, C, D;
   std::vector<std::string> inputs, outputs;
   std::vector<std::string> notes;    // signals that do not occur in the model
+  std::string replaced;              // the note on initial values of the file that give way; also among the notes
   std::vector<std::size_t> cyclic;   // indices of z: coordinates, states of [state] that influence nothing
   std::vector<std::size_t> core;     // the others
   std::vector<Eigenvalue> spectrum;  // eigenvalues of A over the core, with vectors over the core

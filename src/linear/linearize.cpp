@@ -326,6 +326,9 @@ Linearization linearize(const ScenarioAt& scenario_at, const StateChoice& choice
     const Rational &a = range.values[order[k]], &b = range.values[order[k + 1]];
     if (from.outcome.ok() && to.outcome.ok() && a < b) search.crossings({a, from.model}, {b, to.model}, out);
   }
+  const auto replaced = std::find_if(out.results.begin(), out.results.end(),
+                                     [](const LinearResult& r) { return !r.model.replaced.empty(); });
+  if (replaced != out.results.end()) out.notes.push_back("at " + replaced->value + ": " + replaced->model.replaced);
   if (!range.values.empty() && range.values.back() < range.values.front())
     std::reverse(out.crossings.begin(), out.crossings.end());
   return out;

@@ -81,6 +81,8 @@ Outcome Linearizer::at(const std::vector<Multi>& parameters, const InitialState<
   std::vector<std::string> rough(equations_.signals.y.size());
   if (Outcome o = look_for_kinks(point, parameters, rough); !o.ok()) return o;
   point.linear(out);
+  out.replaced = state.replaced.note;
+  if (!out.replaced.empty()) out.notes.push_back(out.replaced);
   leave_out(rough, out);
 
   look_for_steadiness(point, check, out);

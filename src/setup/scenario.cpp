@@ -93,13 +93,23 @@ std::optional<Diagnostic> not_integrated(const Model& model) {
 
 std::vector<std::string> notes_of_redundancy(const Scenario& s) {
   const Model& m = *s.model;
-  std::vector<std::string> list, names;
-  for (const std::size_t r : s.redundant) names.push_back("'" + m.constraints[r].name + "'");
-  if (!names.empty())
-    list.push_back((names.size() == 1 ? "constraint " : "constraints ") + joined_names(names) +
-                   (names.size() == 1 ? " depends on the others at the initial state: it is"
-                                      : " depend on the others at the initial state: they are") +
-                   " left out of the equations, and watched");
+  std::vector<std::string> list;
+  for (const bool vanish : {true, false}) {
+    constexpr std::size_t kNamed = 8;
+    std::vector<std::string> names;
+    for (const std::size_t r : s.redundant)
+      if (s.classes[r].vanishes == vanish) names.push_back("'" + m.constraints[r].name + "'");
+    if (names.empty()) continue;
+    const bool one = names.size() == 1;
+    const std::size_t more = names.size() - std::min(names.size(), kNamed);
+    if (more > 0) names.resize(kNamed), names.push_back(std::to_string(more) + " more");
+    list.push_back((one ? "constraint " : "constraints ") + joined_names(names) +
+                   (vanish ? one ? " vanishes identically with these values of the parameters: it is left out"
+                                 : " vanish identically with these values of the parameters: they are left out"
+                    : one  ? " depends on the others at the initial state: it is left out of the equations, and watched"
+                           : " depend on the others at the initial state: they are left out of the equations, and "
+                             "watched"));
+  }
   for (const std::vector<std::size_t>& group : s.shared.groups())
     list.push_back(note_of_shared_force(m, s.shared, group, multiplier_orders(s) == 0));
   for (const NamedFormula& f : formulas_with_multipliers(m))
@@ -164,6 +174,7 @@ static void choose_constraints(const std::vector<double>& parameters, Scenario& 
   s.shared = shared_forces(*s.mechanics, parameters, s.state, rows);
   s.independent = std::move(rows.independent);
   s.redundant = std::move(rows.redundant);
+  for (std::size_t r : rows.vanishing) s.classes[r].vanishes = true;
   for (std::size_t r : s.redundant) s.classes[r].redundant = true;
 }
 
@@ -265,7 +276,7 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
   const std::vector<double> parameters = parameter_values<double>(*model);
   // Without formulas for all given functions there are no numbers, but there is a structure.
   const bool numbers = model->unknown_functions.empty();
-  s.start = numbers ? std::make_shared<StartPlan>(*s.mechanics, std::vector<StateOverride>{}) : nullptr;
+  s.start = numbers ? std::make_shared<StartPlan>(*s.mechanics) : nullptr;
   const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides,
                                        choice.t,          nullptr,    s.start.get()};
   Outcome initial = numbers ? consistent_state(problem, s.state) : Outcome{};
@@ -327,7 +338,9 @@ std::optional<Outcome> begin_anew(Workspace& s, const StateChoice& choice) {
                                        choice.t,          nullptr,    s.start.get()};
   if (Outcome o = consistent_state(problem, s.state); !o.ok()) return o;
   if (Outcome o = admissible(*s.model, parameters, s.state); !o.ok()) return o;
-  if (independent_constraints(*s.mechanics, parameters, s.state).independent != s.independent) return std::nullopt;
+  const IndependentConstraints rows = independent_constraints(*s.mechanics, parameters, s.state);
+  const auto vanish = std::count_if(s.classes.begin(), s.classes.end(), [](const auto& c) { return c.vanishes; });
+  if (rows.independent != s.independent || static_cast<long>(rows.vanishing.size()) != vanish) return std::nullopt;
   return Outcome{};
 }
 

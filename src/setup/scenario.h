@@ -19,6 +19,7 @@ struct ConstraintClass {
   bool homogeneous = false;  // homogeneous in the top derivative (order 1: it does no work)
   bool rheonomic = false;    // contains t explicitly
   bool redundant = false;    // follows from the others at the initial state
+  bool vanishes = false;     // redundant because it vanishes identically with the values of the parameters
 };
 
 // The number type of a computation. multi: MPFR with the requested number of digits.

@@ -131,7 +131,10 @@ void StateSolver<N>::say_least_change() {
                                    [&](const Node& o) { return o.index == n.index && o.order == n.order; });
     if (!known && *state_.origin(n) == Origin::chosen) changed_least_.push_back(n);
   }
-  if (said.place) state_.notes.erase(state_.notes.begin() + static_cast<std::ptrdiff_t>(*said.place));
+  if (said.place) {
+    state_.notes.erase(state_.notes.begin() + static_cast<std::ptrdiff_t>(*said.place));
+    if (std::optional<std::size_t>& other = state_.replaced.place; other && *other > *said.place) --*other;
+  }
   said = {changed_least_, std::nullopt};
   if (changed_least_.empty()) return;
   constexpr std::size_t kNamed = 8;  // the table of `check` shows all

@@ -13,6 +13,7 @@ static constexpr const char* kGiveGuess =
 template <Number N>
 std::string StateSolver<N>::entry_name(const Node& n) const {
   return derivative_name(n.kind == Kind::multiplier ? multiplier_name(model_, n.index)
+                         : n.kind == Kind::state    ? model_.states[n.index].name
                                                     : model_.coordinates[n.index].name,
                          n.order, Format::text);
 }
@@ -142,8 +143,7 @@ static std::string listed(const std::vector<std::string>& parts, const char* las
   return text;
 }
 
-// Prints two numbers with enough digits to distinguish them.
-static std::pair<std::string, std::string> told_apart(double a, double b) {
+std::pair<std::string, std::string> told_apart(double a, double b) {
   for (int digits : {6, 9, 12, 17})
     if (std::pair text(number_text(a, digits), number_text(b, digits)); text.first != text.second || digits == 17)
       return text;
@@ -260,6 +260,7 @@ Outcome StateSolver<N>::clash(Stage<N>& stage, std::size_t worst, const InitialS
   template std::string StateSolver<N>::solution_text(const std::vector<N>&, const System&, const Structure&) const;    \
   template Outcome StateSolver<N>::no_leading(const System&, const LeadingSolutions<N>&, const std::string&) const;    \
   template Outcome StateSolver<N>::no_value(const Stage<N>&);                                                          \
+  template Outcome StateSolver<N>::clash_of(const Stage<N>&, const Contradiction<N>&, const InitialState<N>&) const;   \
   template Outcome StateSolver<N>::clash(Stage<N>&, std::size_t, const InitialState<N>&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

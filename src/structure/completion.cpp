@@ -26,6 +26,7 @@ Outcome StateSolver<N>::complete(const System& s, const Structure& t) {
   make_room(s, t, 0);
   for (const Expr x : leading_unknowns(s, t)) *state_.origin(node(x)) = Origin::derived;
   say_choices(s, t);
+  say_replaced();
   return {};
 }
 

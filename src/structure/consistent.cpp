@@ -17,16 +17,15 @@ Outcome StateSolver<N>::positions_and_velocities() {
   states();
   start_values([](const Node& s) { return !is_higher(s); });
   std::optional<StartPlan> own;
-  const StartPlan& plan = p_.plan ? *p_.plan : own.emplace(m_, std::vector<StateOverride>{}, p_.mass);
-  if (Outcome o = solve(plan.positions, [&] { return plan.kept ? plan.kept_positions : kept_of(plan.positions); });
-      !o.ok())
-    return o;
+  const StartPlan& plan = p_.plan ? *p_.plan : own.emplace(m_, p_.mass);
+  plan_ = &plan;
+  if (Outcome o = solve(plan.positions); !o.ok()) return o;
   const std::optional<InitialState<N>> before = plan.both ? std::optional(state_) : std::nullopt;
-  if (Outcome o = solve(plan.velocities, [&] { return plan.kept ? plan.kept_velocities : kept_of(plan.velocities); });
-      !o.ok()) {
+  if (Outcome o = solve(plan.velocities); !o.ok()) {
     if (!before || !move_positions(plan, *before)) return o;
   }
   say_least_change();
+  say_replaced();
   return {};
 }
 
@@ -37,7 +36,7 @@ bool StateSolver<N>::move_positions(const StartPlan& plan, const InitialState<N>
   const InitialState<N> failed = state_;
   state_ = before;
   by_flow_ = true;
-  const Outcome o = solve(plan.both, [&] { return plan.kept ? plan.kept_both : kept_of(plan.both); });
+  const Outcome o = solve(plan.both);
   by_flow_ = false;
   const N far(1e4);
   bool near = o.ok();
@@ -87,34 +86,153 @@ void StateSolver<N>::start_values(const std::function<bool(const Node&)>& wanted
   }
 }
 
-// Solves for the data as given. If overrides contradict values or conditions of the file, the overrides hold, and the
-// file's values are only the start of the least change.
+// Solves for the data as given. Values and conditions of the file that clash with values of options give way to these.
 template <Number N>
-Outcome StateSolver<N>::solve(const StartPlan::Stages& stages, const std::function<StartPlan::Stages()>& without) {
+Outcome StateSolver<N>::solve(const StartPlan::Stages& stages) {
   if (!stages) return {};
-  if (p_.overrides.empty()) return attempt(stages, true);
-  notes_.at_first = state_;
-  if (Outcome o = attempt(stages, false); o.ok()) return o;
-  std::swap(state_, notes_.at_first);
-  InitialState<N>& failed = notes_.at_first;
-  for (Expr u : stages->unknowns)
-    if (Origin& origin = *state_.origin(node(u)); origin == Origin::given && !overridden(node(u)))
-      origin = Origin::guessed;
-  const Outcome against_laws = attempt(without(), true);
-  if (against_laws.ok()) return {};
-  state_ = failed;
-  return against_laws;
+  Stage<N>* known = memory_ ? memory_->stage(stages) : nullptr;
+  std::optional<Stage<N>> own;
+  Stage<N>& stage = known ? *known : own.emplace(m_, stages, p_.parameters);
+  if (p_.overrides.empty()) return attempt(stage, true);
+  std::vector<bool> kept(stage.size(), true);
+  for (;;) {
+    notes_.at_first = state_;
+    if (Outcome o = attempt(stage, false); o.ok()) return o;
+    if (std::optional<Outcome> clash = make_room_for_options(stage, kept)) return *clash;
+    stage.keep(kept);
+  }
 }
 
 template <Number N>
 Outcome StateSolver<N>::solve(const StageEquations& equations, const Column& unknowns, unsigned metric) {
-  const StartPlan::Stages stages = planned(m_, equations, unknowns, metric, p_.mass);
-  return solve(stages, [&] { return kept_of(stages); });
+  return solve(planned(m_, equations, unknowns, metric, p_.mass));
 }
 
+// After an attempt that has failed, releases the values of the file that clash with values of options, or leaves out
+// such conditions. Returns the outcome if values of the file clash without an option, or if nothing can give way.
 template <Number N>
-StartPlan::Stages StateSolver<N>::kept_of(const StartPlan::Stages& s) const {
-  return planned(m_, left_of(s->equations, s->unknowns, p_.overrides, m_.graph()), s->unknowns, s->metric, p_.mass);
+std::optional<Outcome> StateSolver<N>::make_room_for_options(Stage<N>& stage, std::vector<bool>& kept) {
+  std::vector<bool> given, fails;
+  for (std::size_t i = 0; i < stage.size(); ++i) fails.push_back(kept[i] && !stage.is_rounded(i));
+  std::swap(state_, notes_.at_first);
+  const InitialState<N>& failed = notes_.at_first;
+  for (std::size_t j = 0; j < stage.unknowns(); ++j) given.push_back(*state_.origin(stage.unknown(j)) == Origin::given);
+  std::vector<PartialContradiction<N>> list = contradictions(stage, state_, given, fails);
+  stage.keep(kept);
+  if (list.empty()) {  // values that agree up to rounding, or a formula without a value: all may take part
+    PartialContradiction<N>& all = list.emplace_back();
+    all.minimal = false;
+    for (std::size_t i = 0; i < stage.size(); ++i)
+      if (kept[i]) all.of.equations.push_back(i);
+    for (std::size_t j = 0; j < given.size(); ++j)
+      if (given[j]) all.of.given.push_back(j);
+  }
+  const InitialState<N> before = state_;
+  for (const auto& [c, minimal] : list) {
+    if (!options_in(stage, c).empty() && release(stage, c, kept)) continue;
+    state_ = before;
+    if (!minimal) return attempt(stage, true);
+    state_ = failed;
+    clash_is_told_ = true;
+    return clash_of(stage, c, before);
+  }
+  return std::nullopt;
+}
+
+// Returns the values of options that take part in a contradiction, and values that follow from these.
+template <Number N>
+std::vector<Node> StateSolver<N>::options_in(const Stage<N>& stage, const Contradiction<N>& c) const {
+  std::vector<Node> list;
+  for (std::size_t j : c.given)
+    if (const Node& n = stage.unknown(j); overridden(n)) list.push_back(n);
+  for (std::size_t i : c.equations)
+    for (const NodeId id : stage.plan().known[i])
+      if (const Node& n = m_.graph().node(id); follows_from_options(n)) list.push_back(n);
+  return list;
+}
+
+// True if a value that was found before the present stage is that of an option or follows from one.
+template <Number N>
+bool StateSolver<N>::follows_from_options(const Node& n) const {
+  if (overridden(n)) return true;
+  if (plan_) return n.kind == Kind::jet && n.order == 0 && positions_of_options()[n.index];
+  return state_.value(n) && *state_.origin(n) != Origin::given;
+}
+
+// Tells for each position whether an option gives it, or whether it is coupled with such positions by equations.
+template <Number N>
+std::vector<bool> StateSolver<N>::positions_of_options() const {
+  std::vector<bool> of(m_.q.size());
+  for (std::size_t a = 0; a < of.size(); ++a) of[a] = overridden(node(m_.q[a]));
+  if (!plan_->positions) return of;
+  for (bool more = true; more;) {
+    more = false;
+    for (const std::vector<bool>& held : plan_->positions->holds) {
+      bool coupled = false;
+      for (std::size_t a = 0; a < of.size(); ++a) coupled = coupled || (held[a] && of[a]);
+      for (std::size_t a = 0; coupled && a < of.size(); ++a)
+        if (held[a] && !of[a] && state_.q_origin[a] != Origin::given) of[a] = more = true;
+    }
+  }
+  return of;
+}
+
+// Releases the values of the file in a contradiction, or leaves out its conditions on values of options alone if it has
+// no values of the file. Returns false if it has neither.
+template <Number N>
+bool StateSolver<N>::release(const Stage<N>& stage, const Contradiction<N>& c, std::vector<bool>& kept) {
+  ReplacedByOptions<N>& replaced = state_.replaced;
+  bool any = false;
+  for (std::size_t j : c.given) {
+    const Node& n = stage.unknown(j);
+    if (overridden(n)) continue;
+    any = true;  // another contradiction may have released it already
+    if (Origin& origin = *state_.origin(n); origin == Origin::given) {
+      origin = Origin::guessed;
+      replaced.values.push_back({n, *state_.value(n)});
+    }
+  }
+  if (any) {
+    for (const Node& n : options_in(stage, c))
+      if (std::none_of(replaced.options.begin(), replaced.options.end(),
+                       [&](const Node& o) { return o.kind == n.kind && o.index == n.index && o.order == n.order; }))
+        replaced.options.push_back(n);
+    return true;
+  }
+  const auto of_options_alone = [&](std::size_t i) {
+    for (std::size_t j = 0; j < stage.unknowns(); ++j)
+      if (stage.holds(i, j) && !overridden(stage.unknown(j))) return false;
+    return true;
+  };
+  for (std::size_t i : c.equations)
+    if (stage.equation(i).condition && kept[i] && of_options_alone(i)) kept[i] = false, any = true;
+  return any;
+}
+
+// Notes the values of the file that options replace, in place of an earlier note.
+template <Number N>
+void StateSolver<N>::say_replaced() {
+  constexpr std::size_t kNamed = 8;
+  ReplacedByOptions<N>& replaced = state_.replaced;
+  std::vector<std::string> parts;
+  for (const auto& [n, before] : replaced.values) {
+    const double is = to_double(*state_.value(n)), was = to_double(before);
+    if (std::abs(is - was) <= stage_rounding<double>() * std::max(std::abs(is), std::abs(was))) continue;
+    const auto [old, now] = told_apart(was, is);
+    parts.push_back(entry_name(n) + " = " + old + (parts.empty() ? " is replaced by " : " by ") + now);
+  }
+  if (parts.empty()) return;
+  std::string text, options;
+  for (std::size_t k = 0; k < std::min(parts.size(), kNamed); ++k) text += (k ? ", " : "") + parts[k];
+  for (const Node& n : replaced.options)
+    options += (options.empty() ? "" : ", ") + entry_name(n) + " = " + number_text(to_double(*state_.value(n)), 6);
+  replaced.note = "initial data of the file clash with " + options + " and give way: " + text +
+                  (parts.size() > kNamed ? ", …" : "");
+  if (!replaced.place) {
+    replaced.place = state_.notes.size();
+    state_.notes.emplace_back();
+  }
+  state_.notes[*replaced.place] = replaced.note;
 }
 
 // Treats the given values as rounded numbers: all values may change a little. The others start from their values found
@@ -153,17 +271,12 @@ bool StateSolver<N>::correct_rounded(Stage<N>& stage, const InitialState<N>& bef
 
 // `tell`: true if a failure needs a message.
 template <Number N>
-Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
-  if (!stages) return {};
-  const Column& unknowns = stages->unknowns;
-  Stage<N>* known = memory_ ? memory_->stage(stages) : nullptr;
-  std::optional<Stage<N>> own;
-  Stage<N>& stage = known ? *known : own.emplace(m_, stages, p_.parameters);
+Outcome StateSolver<N>::attempt(Stage<N>& stage, bool tell) {
   std::vector<std::size_t>&free = notes_.free, &all = notes_.all;
   free.clear(), all.clear();
   notes_.before = state_;
   const InitialState<N>& before = notes_.before;
-  for (std::size_t j = 0; j < unknowns.size(); ++j) {
+  for (std::size_t j = 0; j < stage.unknowns(); ++j) {
     all.push_back(j);
     if (*state_.origin(stage.unknown(j)) != Origin::given) free.push_back(j);
   }
@@ -212,7 +325,8 @@ Outcome consistent_state(const InitialProblem<N>& problem, StartMemory<N>& memor
 
 #define INSTANTIATE(N)                                                                                                 \
   template void StateSolver<N>::start_values(const std::function<bool(const Node&)>&);                                 \
-  template Outcome StateSolver<N>::solve(const StageEquations&, const Column&, unsigned);
+  template Outcome StateSolver<N>::solve(const StageEquations&, const Column&, unsigned);                              \
+  template void StateSolver<N>::say_replaced();
 INSTANTIATE(double)
 INSTANTIATE(long double)
 INSTANTIATE(Quad)

@@ -16,6 +16,14 @@ class Circuits {
   }
 
   std::optional<Contradiction<N>> smallest() {
+    std::optional<Contradiction<N>> best;
+    for (Contradiction<N>& found : all())
+      if (!best || members(found) < members(*best)) best = std::move(found);
+    return best;
+  }
+
+  // Returns the contradictions of the rows beyond a basis.
+  std::vector<Contradiction<N>> all() {
     Matrix<N> a(s_.size(), free_.size());
     for (std::size_t i = 0; i < s_.size(); ++i)
       for (std::size_t j = 0; j < free_.size(); ++j) a(i, j) = s_.jacobian(i, free_[j]);
@@ -25,17 +33,16 @@ class Circuits {
     Matrix<N> transposed(n, n);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j) transposed(j, i) = a(basis_[i], rows.pivot_columns[j]);
+    std::vector<Contradiction<N>> list;
     Lu<N> lu;
-    if (n > 0 && !lu.factor(transposed)) return std::nullopt;
-    std::optional<Contradiction<N>> best;
+    if (n > 0 && !lu.factor(transposed)) return list;
     for (std::size_t r : rows.dependent) {
       std::vector<N> right(n, N(0)), c;
       for (std::size_t j = 0; j < n; ++j) right[j] = a(r, rows.pivot_columns[j]);
       if (n > 0) lu.solve(right, c);
-      const auto found = circuit(a, r, c);
-      if (found && (!best || members(*found) < members(*best))) best = found;
+      if (auto found = circuit(a, r, c)) list.push_back(std::move(*found));
     }
-    return best;
+    return list;
   }
 
  private:
@@ -93,32 +100,39 @@ constexpr std::size_t kMostUnknowns = 60;
 template <Number N>
 class DeletionFilter {
  public:
-  DeletionFilter(const Mechanics& m, Stage<N>& stage, InitialState<N>& state, const std::vector<bool>& given)
+  DeletionFilter(Stage<N>& stage, InitialState<N>& state, const std::vector<bool>& given)
       : s_(stage), state_(state), start_(state), given_(given),
         holds_(stage.size(), std::vector<bool>(stage.unknowns(), false)) {
-    for (std::size_t i = 0; i < s_.size(); ++i) {
-      const std::vector<NodeId> all = symbols({&s_.equation(i).residual, 1});
-      for (std::size_t j = 0; j < s_.unknowns(); ++j)
-        holds_[i][j] =
-            std::any_of(all.begin(), all.end(), [&](NodeId id) { return &m.graph().node(id) == &s_.unknown(j); });
-    }
+    for (std::size_t i = 0; i < s_.size(); ++i)
+      for (std::size_t j = 0; j < s_.unknowns(); ++j) holds_[i][j] = s_.holds(i, j);
   }
   ~DeletionFilter() {
     s_.keep_all();
     state_ = start_;
   }
 
+  // Returns all equations coupled with this one through free unknowns, and the given values in them.
+  Contradiction<N> whole(std::size_t row) const {
+    const std::vector<bool> rows = neighbours(row);
+    Contradiction<N> out;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (rows[i]) out.equations.push_back(i);
+    for (std::size_t j = 0; j < given_.size(); ++j)
+      if (given_[j] && touched(rows, j)) out.given.push_back(j);
+    return out;
+  }
+  bool too_many(std::size_t worst) const {
+    const Contradiction<N> c = whole(worst);
+    const std::vector<bool> rows = neighbours(worst);
+    std::size_t unknowns = 0;
+    for (std::size_t j = 0; j < given_.size(); ++j) unknowns += touched(rows, j) ? 1 : 0;
+    return c.equations.size() + c.given.size() > kMostMembers || unknowns > kMostUnknowns;
+  }
+
   std::optional<Contradiction<N>> run(std::size_t worst) {
     std::vector<bool> rows = neighbours(worst), fixed(given_.size(), false);
-    std::size_t members = 0, unknowns = 0;
-    for (std::size_t j = 0; j < given_.size(); ++j) {
-      const bool met = touched(rows, j);
-      fixed[j] = given_[j] && met;
-      members += fixed[j] ? 1 : 0;
-      unknowns += met ? 1 : 0;
-    }
-    members += static_cast<std::size_t>(std::count(rows.begin(), rows.end(), true));
-    if (members > kMostMembers || unknowns > kMostUnknowns || solvable(rows, fixed)) return std::nullopt;
+    for (std::size_t j = 0; j < given_.size(); ++j) fixed[j] = given_[j] && touched(rows, j);
+    if (too_many(worst) || solvable(rows, fixed)) return std::nullopt;
     // If the equations contradict each other without given values, no given value takes part.
     if (const std::vector<bool> none(given_.size(), false); !solvable(rows, none)) fixed = none;
     for (std::vector<bool>* list : {&rows, &fixed})
@@ -183,18 +197,43 @@ class DeletionFilter {
 template <Number N>
 std::optional<Contradiction<N>> contradiction(Stage<N>& stage, InitialState<N>& state, const std::vector<bool>& given,
                                               std::size_t worst) {
-  if (!stage.linear()) return DeletionFilter<N>(stage.mechanics(), stage, state, given).run(worst);
+  if (!stage.linear()) return DeletionFilter<N>(stage, state, given).run(worst);
   if (!stage.evaluate(state)) return std::nullopt;
   return Circuits<N>(stage, state, given).smallest();
 }
 
-template std::optional<Contradiction<double>> contradiction(Stage<double>&, InitialState<double>&,
-                                                            const std::vector<bool>&, std::size_t);
-template std::optional<Contradiction<long double>> contradiction(Stage<long double>&, InitialState<long double>&,
-                                                                 const std::vector<bool>&, std::size_t);
-template std::optional<Contradiction<Quad>> contradiction(Stage<Quad>&, InitialState<Quad>&, const std::vector<bool>&,
-                                                          std::size_t);
-template std::optional<Contradiction<Multi>> contradiction(Stage<Multi>&, InitialState<Multi>&,
-                                                           const std::vector<bool>&, std::size_t);
+template <Number N>
+std::vector<PartialContradiction<N>> contradictions(Stage<N>& stage, InitialState<N>& state,
+                                                    const std::vector<bool>& given, const std::vector<bool>& fails) {
+  std::vector<PartialContradiction<N>> list;
+  if (stage.linear()) {
+    if (!stage.evaluate(state)) return list;
+    for (Contradiction<N>& c : Circuits<N>(stage, state, given).all()) list.push_back({std::move(c), true});
+    return list;
+  }
+  DeletionFilter<N> filter(stage, state, given);
+  std::vector<bool> seen(stage.size(), false);
+  for (std::size_t i = 0; i < stage.size(); ++i) {
+    if (!fails[i] || seen[i]) continue;
+    Contradiction<N> whole = filter.whole(i);
+    for (const std::size_t k : whole.equations) seen[k] = true;
+    if (filter.too_many(i))
+      list.push_back({std::move(whole), false});
+    else if (auto c = filter.run(i))
+      list.push_back({std::move(*c), true});
+  }
+  return list;
+}
+
+#define INSTANTIATE(N)                                                                                                 \
+  template std::optional<Contradiction<N>> contradiction(Stage<N>&, InitialState<N>&, const std::vector<bool>&,        \
+                                                         std::size_t);                                                 \
+  template std::vector<PartialContradiction<N>> contradictions(Stage<N>&, InitialState<N>&, const std::vector<bool>&,  \
+                                                               const std::vector<bool>&);
+INSTANTIATE(double)
+INSTANTIATE(long double)
+INSTANTIATE(Quad)
+INSTANTIATE(Multi)
+#undef INSTANTIATE
 
 }  // namespace anholon

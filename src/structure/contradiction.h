@@ -6,6 +6,8 @@
 // v_j is not 0, the row, the A_i with c_i != 0 and the given values whose coefficient is not 0 are such a set, since no
 // proper subset is linearly dependent (a circuit of the matroid of rows). The smallest of several sets is taken.
 //
+// `contradictions` returns all sets of this kind.
+//
 // Nonlinear equations: members are left out one by one as long as no solution is found (deletion filter; J. W. Chinneck
 // and E. W. Dravnieks, ORSA Journal on Computing 3, 1991, 157-168). "No solution" means that Newton's method from many
 // starts finds none.
@@ -29,5 +31,19 @@ struct Contradiction {
 template <Number N>
 std::optional<Contradiction<N>> contradiction(Stage<N>& stage, InitialState<N>& state, const std::vector<bool>& given,
                                               std::size_t worst);
+
+// A contradiction of a set of equations that are coupled through free unknowns.
+template <Number N>
+struct PartialContradiction {
+  Contradiction<N> of;
+  // false if the search would take too long; `of` then holds all equations and given values of the set
+  bool minimal = true;
+};
+
+// Returns contradictions of all sets of coupled equations that have one; of linear equations, those of all rows beyond a
+// basis. `fails[i]`: equation i does not hold where the attempt to solve the equations has ended.
+template <Number N>
+std::vector<PartialContradiction<N>> contradictions(Stage<N>& stage, InitialState<N>& state,
+                                                    const std::vector<bool>& given, const std::vector<bool>& fails);
 
 }  // namespace anholon

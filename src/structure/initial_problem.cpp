@@ -33,28 +33,12 @@ Tape initial_values(const Model& model) {
   return compile(es);
 }
 
-StageEquations left_of(const StageEquations& equations, const Column& unknowns,
-                       const std::vector<StateOverride>& overrides, Graph& g) {
-  StageEquations list;
-  for (const StageEquation& e : equations) {
-    bool open = !e.condition;
-    for (NodeId id : symbols({&e.residual, 1})) {
-      const Expr symbol{&g, id};
-      open = open || (std::find(unknowns.begin(), unknowns.end(), symbol) != unknowns.end() &&
-                      !overridden(overrides, g.node(id)));
-    }
-    if (open) list.push_back(e);
-  }
-  return list;
-}
-
 StartPlan::Stages planned(const Mechanics& m, const StageEquations& equations, const Column& unknowns, unsigned metric,
                           const std::vector<Column>* mass) {
   return equations.empty() ? nullptr : std::make_shared<StagePlan>(m, equations, unknowns, metric, mass);
 }
 
-StartPlan::StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass)
-    : values(initial_values(*m.model)) {
+StartPlan::StartPlan(const Mechanics& m, const std::vector<Column>* mass) : values(initial_values(*m.model)) {
   const Model& model = *m.model;
   std::vector<StageEquation> of_positions, of_velocities;
   for (const Constraint& c : model.constraints) {
@@ -83,24 +67,19 @@ StartPlan::StartPlan(const Mechanics& m, const std::vector<StateOverride>& overr
     q_and_qd.insert(q_and_qd.end(), m.qd.begin(), m.qd.end());
     both = planned(m, of_all, q_and_qd, kPositions | kVelocities, mass);
   }
-  kept = !overrides.empty();
-  if (!kept) return;
-  kept_both = planned(m, left_of(of_all, q_and_qd, overrides, m.graph()), q_and_qd, kPositions | kVelocities, mass);
-  kept_positions = planned(m, left_of(of_positions, m.q, overrides, m.graph()), m.q, kPositions, mass);
-  kept_velocities = planned(m, left_of(of_velocities, m.qd, overrides, m.graph()), m.qd, kVelocities, mass);
 }
 
 StartPlan StartPlan::copy() const {
   StartPlan p = *this;
-  for (Stages* stages : {&p.positions, &p.velocities, &p.both, &p.kept_positions, &p.kept_velocities, &p.kept_both})
+  for (Stages* stages : {&p.positions, &p.velocities, &p.both})
     if (*stages) *stages = std::make_shared<StagePlan>(**stages);
   return p;
 }
 
 void for_each_expression(StartPlan& p, const ExprVisitor& f) {
-  auto& [values, positions, velocities, both, kept, kept_positions, kept_velocities, kept_both] = p;
-  static_cast<void>(values), static_cast<void>(kept);  // without handles
-  for (StartPlan::Stages* stages : {&positions, &velocities, &both, &kept_positions, &kept_velocities, &kept_both})
+  auto& [values, positions, velocities, both] = p;
+  static_cast<void>(values);  // without handles
+  for (StartPlan::Stages* stages : {&positions, &velocities, &both})
     if (*stages) for_each_expression(const_cast<StagePlan&>(**stages), f);
 }
 

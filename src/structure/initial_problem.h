@@ -20,10 +20,9 @@ struct StateOverride {
 };
 
 // The expressions needed for positions and velocities, built once for many states: with a plan, `consistent_state`
-// builds none if the overrides are those of the plan, with other values; many threads may then call it at the same
-// time.
+// builds none, and many threads may call it at the same time.
 struct StartPlan {
-  StartPlan(const Mechanics& m, const std::vector<StateOverride>& overrides, const std::vector<Column>* mass = nullptr);
+  explicit StartPlan(const Mechanics& m, const std::vector<Column>* mass = nullptr);
 
   Tape values;  // t, the states, then guesses and given values
   using Stages = std::shared_ptr<const StagePlan>;
@@ -31,9 +30,6 @@ struct StartPlan {
   // The stage of positions and velocities together, if there are conditions on velocities: positions may have to move
   // if no velocities fit.
   Stages both;
-  // true if the plan is made for overrides; then it has these stages:
-  bool kept = false;
-  Stages kept_positions, kept_velocities, kept_both;  // without conditions on overridden values alone
 
   // Returns the same plan with stages of its own. The handles still refer to the old graph.
   StartPlan copy() const;
@@ -61,9 +57,6 @@ bool overridden(const std::vector<StateOverride>& overrides, const Node& n);
 using StageEquations = std::vector<StageEquation>;
 
 StageEquations conditions_of(const Model& model);
-// Returns the equations that overrides leave: all laws, and conditions that contain unknowns without overrides.
-StageEquations left_of(const StageEquations& equations, const Column& unknowns,
-                       const std::vector<StateOverride>& overrides, Graph& g);
 // Returns the stage of these equations; null if there are no equations.
 StartPlan::Stages planned(const Mechanics& m, const StageEquations& equations, const Column& unknowns, unsigned metric,
                           const std::vector<Column>* mass);

@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "structure/redundancy.h"
 #include "tape/bind.h"
 
 namespace anholon {
@@ -66,10 +67,17 @@ void add_those_that_matter(const Model& model, Expr coefficient, std::set<std::s
 
 std::vector<std::size_t> parameters_of_order(const Mechanics& mechanics, const Elimination& elimination,
                                              const System& system, const Structure& t) {
-  if (!may_lack_terms(system, t)) return {};
   const Model& model = *system.model;
-  const System whole = implicit_system(system.model, mechanics, *system.form, system.constraints, elimination);
   std::set<std::size_t> found;
+  Column values;
+  for (const Parameter& p : model.parameters) values.push_back(p.value);
+  const std::vector<double> parameters = evaluate_parameters<double>(*model.graph, values);
+  for (std::size_t r = 0; r < mechanics.phi.size(); ++r)
+    if (std::find(system.constraints.begin(), system.constraints.end(), r) == system.constraints.end() &&
+        vanishes_identically(mechanics, parameters, r))
+      add_those_that_matter(model, in_free_parameters(model, put_masses(model, mechanics.phi[r])), found);
+  if (!may_lack_terms(system, t)) return {found.begin(), found.end()};
+  const System whole = implicit_system(system.model, mechanics, *system.form, system.constraints, elimination);
   for (std::size_t i = 0; i < whole.size(); ++i)
     for (NodeId id : symbols({&whole.equations[i], 1})) {
       const auto j = whole.variable(id);

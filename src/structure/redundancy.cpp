@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "expr/generic_point.h"
+#include "expr/normal.h"
 #include "structure/stage.h"
 #include "tape/bind.h"
 
@@ -60,7 +61,8 @@ class OrthonormalRows {
 
 }  // namespace
 
-IndependentConstraints choose_independent(const Matrix<double>& phi, const std::vector<int>& order) {
+IndependentConstraints choose_independent(const Matrix<double>& phi, const std::vector<int>& order,
+                                          const std::function<bool(std::size_t)>& vanishes) {
   IndependentConstraints choice;
   std::vector<std::size_t> open;
   std::vector<std::vector<double>> rows(phi.rows);
@@ -68,7 +70,7 @@ IndependentConstraints choose_independent(const Matrix<double>& phi, const std::
     rows[i].assign(&phi.data[i * phi.cols], &phi.data[i * phi.cols] + phi.cols);
     const double l = length(rows[i]);
     if (!(l > 0)) {
-      choice.independent.push_back(i);
+      (vanishes && vanishes(i) ? choice.vanishing : choice.independent).push_back(i);
       continue;
     }
     for (double& x : rows[i]) x /= l;
@@ -97,6 +99,7 @@ IndependentConstraints choose_independent(const Matrix<double>& phi, const std::
   for (int k : orders) take(k, kFarFromDependent), take(k, kNearlyDependent);
   for (int k : orders) take(k, kDependent);
   choice.redundant = std::move(open);
+  choice.redundant.insert(choice.redundant.end(), choice.vanishing.begin(), choice.vanishing.end());
   std::sort(choice.independent.begin(), choice.independent.end());
   std::sort(choice.redundant.begin(), choice.redundant.end());
   return choice;
@@ -162,6 +165,24 @@ std::vector<Dependency> dependencies(const Matrix<double>& phi, const Independen
   return list;
 }
 
+bool vanishes_identically(const Mechanics& m, const std::vector<double>& parameters, std::size_t r) {
+  const std::unique_ptr<Graph> own = m.graph().clone();  // the graph may be frozen
+  const Model& model = *m.model;
+  // Formulas of the file are exact; other numbers have been set since.
+  Column formulas;
+  for (const Parameter& p : model.parameters) formulas.push_back(p.value);
+  const std::vector<double> of_file = evaluate_parameters<double>(m.graph(), formulas);
+  Expr e = own->own(m.phi[r]);
+  for (std::size_t depth = 0; depth <= formulas.size(); ++depth)
+    e = substitute({&e, 1}, [&](NodeId id) {
+      const Node& n = own->node(id);
+      if (n.kind != Kind::parameter) return Expr{};
+      return parameters[n.index] == of_file[n.index] ? own->own(formulas[n.index])
+                                                     : own->number(Rational(parameters[n.index]));
+    })[0];
+  return proved_zero(e);
+}
+
 Matrix<double> constraint_rows(const Mechanics& m, const std::vector<double>& parameters,
                                const InitialState<double>& state) {
   const std::size_t s = m.phi.size(), n = m.q.size();
@@ -184,7 +205,8 @@ Matrix<double> constraint_rows(const Mechanics& m, const std::vector<double>& pa
 IndependentConstraints independent_constraints(const Mechanics& m, const std::vector<double>& parameters,
                                                const InitialState<double>& state) {
   if (m.phi.empty()) return {};
-  return choose_independent(constraint_rows(m, parameters, state), m.order);
+  return choose_independent(constraint_rows(m, parameters, state), m.order,
+                            [&](std::size_t r) { return vanishes_identically(m, parameters, r); });
 }
 
 template <Number N>

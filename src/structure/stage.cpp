@@ -33,6 +33,13 @@ StagePlan::StagePlan(const Mechanics& m, std::vector<StageEquation> of, Column i
     const std::vector<NodeId> met = symbols({&e.residual, 1});
     std::vector<bool>& row = holds.emplace_back();
     for (Expr u : unknowns) row.push_back(std::find(met.begin(), met.end(), u.id) != met.end());
+    std::vector<NodeId>& others = known.emplace_back();
+    for (const NodeId id : met) {
+      const Kind kind = e.residual.graph->node(id).kind;
+      if ((kind == Kind::jet || kind == Kind::multiplier) &&
+          std::none_of(unknowns.begin(), unknowns.end(), [&](Expr u) { return u.id == id; }))
+        others.push_back(id);
+    }
   }
   moving = dependents(tape, slots);
   mass_moves = std::any_of(tape.roots.begin() + static_cast<std::ptrdiff_t>(equations.size() * (unknowns.size() + 1)),
@@ -336,10 +343,10 @@ static void for_each_expression(StageEquation& e, const ExprVisitor& f) {
 }
 
 void for_each_expression(StagePlan& p, const ExprVisitor& f) {
-  auto& [equations, unknowns, metric, linear, tape, moving, mass_moves, is_unknown, holds] = p;
+  auto& [equations, unknowns, metric, linear, tape, moving, mass_moves, is_unknown, holds, known] = p;
   for_each_expression_of(f, equations, unknowns, metric, linear, tape);
-  static_cast<void>(moving), static_cast<void>(mass_moves), static_cast<void>(is_unknown),
-      static_cast<void>(holds);  // without handles
+  static_cast<void>(moving), static_cast<void>(mass_moves), static_cast<void>(is_unknown), static_cast<void>(holds),
+      static_cast<void>(known);  // without handles
 }
 
 }  // namespace anholon

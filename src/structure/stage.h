@@ -37,8 +37,9 @@ struct StagePlan {
   // The slots that depend on the unknowns; `mass_moves` tells whether the mass matrix is among them.
   std::vector<std::uint32_t> moving;
   bool mass_moves = false;
-  std::vector<bool> is_unknown;          // true for those of the tape's inputs that are unknowns
-  std::vector<std::vector<bool>> holds;  // true if equation i contains unknown j
+  std::vector<bool> is_unknown;            // true for those of the tape's inputs that are unknowns
+  std::vector<std::vector<bool>> holds;    // true if equation i contains unknown j
+  std::vector<std::vector<NodeId>> known;  // for each equation: the other entries of a state in it
 };
 
 // The handles of a plan (expr/handles.h).
@@ -56,15 +57,16 @@ class Stage {
               parameters) {}
 
   std::size_t size() const { return plan_->equations.size(); }
+  const StagePlan& plan() const { return *plan_; }
   std::size_t unknowns() const { return plan_->unknowns.size(); }
   const StageEquation& equation(std::size_t i) const { return plan_->equations[i]; }
   const Node& unknown(std::size_t j) const { return m_.graph().node(plan_->unknowns[j].id); }
   N& x(InitialState<N>& s, std::size_t j) const { return *s.value(unknown(j)); }
   const N& x_of(const InitialState<N>& s, std::size_t j) const { return *s.value(unknown(j)); }
   bool linear() const { return plan_->linear; }
-  // True if the formula of equation i contains unknown j, also where its partial derivative vanishes.
-  bool holds(std::size_t i, std::size_t j) const { return plan_->holds[i][j]; }
-  const Mechanics& mechanics() const { return m_; }
+  // True if the formula of equation i contains unknown j, also where its partial derivative vanishes. False for
+  // equations that a restriction leaves out.
+  bool holds(std::size_t i, std::size_t j) const { return plan_->holds[i][j] && (kept_.empty() || kept_[i]); }
 
   // Restricts the stage to these equations; keep_all() removes the restriction.
   void keep(std::vector<bool> rows) { kept_ = std::move(rows), known_ = false; }

@@ -25,8 +25,7 @@ class StartMemory {
   StartMemory(const Mechanics& m, const StartPlan& plan, const std::vector<N>& parameters)
       : values_(plan.values, 0, parameters) {
     values_.evaluate();
-    for (const StartPlan::Stages& s :
-         {plan.positions, plan.velocities, plan.both, plan.kept_positions, plan.kept_velocities, plan.kept_both})
+    for (const StartPlan::Stages& s : {plan.positions, plan.velocities, plan.both})
       if (s) stages_.push_back({s.get(), std::make_unique<Stage<N>>(m, s, parameters)});
   }
 

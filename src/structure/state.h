@@ -27,6 +27,23 @@ struct LeastChangeNote {
   std::optional<std::size_t> place;  // its index among the notes of the state
 };
 
+// A value of the file in whose place another one was found, because it clashes with a value of an option.
+template <Number N>
+struct ReplacedValue {
+  Node entry;
+  N before{0};
+};
+
+// The values of the file that clash with values of options, and the note on them. Conditions on values of options alone
+// are replaced as values of the file for the same entries are, without a note.
+template <Number N>
+struct ReplacedByOptions {
+  std::vector<ReplacedValue<N>> values;
+  std::vector<Node> options;         // values that they clash with
+  std::string note;                  // empty if every value stays; also among the notes of the state
+  std::optional<std::size_t> place;  // its index there
+};
+
 template <Number N>
 struct InitialState {
   N t{0};
@@ -39,6 +56,7 @@ struct InitialState {
   N largest_correction{0};         // the largest correction of a given value
   std::vector<std::string> notes;  // the choices made
   LeastChangeNote least_change;
+  ReplacedByOptions<N> replaced;
 
   // Removes all values; the storage of the lists is kept for the next state.
   void clear() {
@@ -48,6 +66,7 @@ struct InitialState {
     states.clear(), state_rates.clear(), states_origin.clear(), state_rates_origin.clear();
     notes.clear();
     least_change = {};
+    replaced = {};
   }
 
   // Returns q_a^(k) or lambda_r^(k); nullptr for orders that the state does not hold, and for other symbols.

@@ -11,6 +11,9 @@
 
 namespace anholon {
 
+// Prints two numbers with enough digits to distinguish them.
+std::pair<std::string, std::string> told_apart(double a, double b);
+
 template <Number N>
 class StateSolver {
  public:
@@ -35,14 +38,21 @@ class StateSolver {
   // Positions and velocities (consistent.cpp).
   void states();
   void start_values(const std::function<bool(const Node&)>& wanted);
-  Outcome solve(const StartPlan::Stages& stages, const std::function<StartPlan::Stages()>& without);
+  Outcome solve(const StartPlan::Stages& stages);
   Outcome solve(const StageEquations& equations, const Column& unknowns, unsigned metric);
-  StartPlan::Stages kept_of(const StartPlan::Stages& s) const;
-  Outcome attempt(const StartPlan::Stages& stages, bool tell);
+  Outcome attempt(Stage<N>& stage, bool tell);
   bool correct_rounded(Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free,
                        const std::vector<std::size_t>& all);
   bool move_positions(const StartPlan& plan, const InitialState<N>& before);
   void mark_derived(const Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free);
+
+  // Options in place of values of the file (consistent.cpp).
+  std::optional<Outcome> make_room_for_options(Stage<N>& stage, std::vector<bool>& kept);
+  bool release(const Stage<N>& stage, const Contradiction<N>& c, std::vector<bool>& kept);
+  std::vector<Node> options_in(const Stage<N>& stage, const Contradiction<N>& c) const;
+  bool follows_from_options(const Node& n) const;
+  std::vector<bool> positions_of_options() const;
+  void say_replaced();
 
   // Completes the state beyond velocities (completion.cpp).
   void make_room(const System& s, const Structure& t, int beyond);
@@ -87,6 +97,7 @@ class StateSolver {
   StartMemory<N>* memory_;
   StartNotes<N> own_notes_;  // without a memory
   StartNotes<N>& notes_;
+  const StartPlan* plan_ = nullptr;  // while positions and velocities are solved for
   std::vector<Node> changed_least_;  // positions and velocities that the equations move but do not determine
   bool by_flow_ = false;        // positions are searched along Newton's flow: conditions on accelerations move them
   bool clash_is_told_ = false;  // the message names the values and equations of the last stage that failed

@@ -175,6 +175,28 @@ std::string without_inertia(const System& s, const std::vector<std::vector<int>>
   return list;
 }
 
+// Returns the outcome for a constraint whose highest derivatives all have coefficients that are 0, so that its reaction
+// acts on nothing; nullopt if there is none.
+std::optional<Outcome> order_falls(const System& s, const std::vector<std::vector<int>>& sigma) {
+  for (std::size_t j = s.coordinates; j < s.mechanical(); ++j) {
+    bool occurs = false;
+    for (std::size_t i = 0; i < s.size(); ++i) occurs = occurs || sigma[i][j] != kAbsent;
+    const Constraint& c = s.model->constraints[s.constraints[j - s.coordinates]];
+    if (occurs || c.by) continue;
+    const std::string what = c.order == 0   ? "the coordinates"
+                             : c.order == 1 ? "the velocities"
+                             : c.order == 2 ? "the accelerations"
+                                            : "the derivatives of order " + std::to_string(c.order);
+    return Outcome{OutcomeKind::singular,
+                   "with these values of the parameters the coefficients of " + what + " in the constraint '" + c.name +
+                       "' are 0, so that its reaction acts on nothing",
+                   c.order == 0 ? "give the parameters other values, or leave the constraint out"
+                                : "give the parameters other values, or write the constraint without " + what,
+                   c.span};
+  }
+  return std::nullopt;
+}
+
 // Returns the equations that are too many for the unknowns in them: those that alternating paths reach from an equation
 // that no matching gives an unknown of its own.
 std::vector<std::size_t> too_many(const std::vector<std::vector<int>>& sigma) {
@@ -315,6 +337,7 @@ Outcome analyse(const System& s, const std::vector<double>& parameters, const Pr
     if (const std::string list = without_inertia(s, out.sigma); !list.empty())
       return {OutcomeKind::singular, "no inertia acts on " + list,
               "a mass or a moment of inertia is zero, or no body moves with that coordinate"};
+    if (const auto falls = order_falls(s, out.sigma)) return *falls;
     const std::string name = undetermined(s, out.sigma);
     if (const auto idle = idle_input(s, out.sigma); name.empty() && idle) return *idle;
     return {OutcomeKind::singular,

@@ -230,13 +230,15 @@ void check_text(Workspace& s, const Explanation& x, const Outcome& outcome) {
     const Constraint& c = model.constraints[r];
     say(stdout, "  %-14s %s\n", c.name.c_str(), c.equation.c_str());
     std::string redundant;
-    if (s.classes[r].redundant)
+    if (s.classes[r].vanishes)
+      redundant = "; vanishes identically with these values of the parameters";
+    else if (s.classes[r].redundant)
       redundant = x.constraints[r].follows_from.empty()
                       ? "; redundant here"
                       : (outcome.ok() ? "; redundant here: it follows from " : "; its row depends here on that of ") +
                             listed(model, x.constraints[r].follows_from);
     // A vector equation has one component too many.
-    if (!redundant.empty() && c.name.find('.') != std::string::npos && c.name.back() >= 'x')
+    if (!redundant.empty() && !s.classes[r].vanishes && c.name.find('.') != std::string::npos && c.name.back() >= 'x')
       redundant += "; 'along' names the directions that count";
     say(stdout, "  %-14s %s; %s%s\n", "", description(s.classes[r], c.order).c_str(),
         work(s, x.constraints[r], r, kLongestPower).c_str(), redundant.c_str());

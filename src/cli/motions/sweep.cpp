@@ -246,7 +246,7 @@ int sweep(const SweepCommand& asked) {
   const EnsembleReport r = compute(parts, cases, out, o.quiet);
   const std::string write_error = out.close(r);
   if (!o.quiet) report_sweep(r, cases, out);
-  report_without_value(r);
+  report_notes_on_cases(r);
   report_stopped(out.stopped());
   if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {
     print_outcome(r.outcome);

@@ -192,7 +192,7 @@ Missing fill_missing(const SweepCommand& o, const FolderSweep& sweep, const Swee
     };
     if (cases > 0) filled = fill(store, pieces, fill_options);
   }
-  report_without_value(filled.report);
+  report_notes_on_cases(filled.report);
   if (!filled.error.empty()) {
     say(stderr, "error: %s\nhint: the parts before it are kept; the same command goes on\n", filled.error.c_str());
     return {false, kBadInput};

@@ -50,8 +50,8 @@ void report_sweep(const EnsembleReport& r, std::size_t cases, const SweepOutput&
   for (const std::string& line : judgement_lines(r)) say(stderr, "%s\n", line.c_str());
 }
 
-void report_without_value(const EnsembleReport& r) {
-  for (const std::string& note : notes_without_value(r, asker())) say(stderr, "note: %s\n", note.c_str());
+void report_notes_on_cases(const EnsembleReport& r) {
+  for (const std::string& note : notes_on_cases(r, asker())) say(stderr, "note: %s\n", note.c_str());
 }
 
 void report_stopped(const StoppedByKind& all, std::FILE* to) {

@@ -39,7 +39,7 @@ const ResultFormat& sweep_format(const std::string& output, bool json);
 // Prints on stderr how many cases finished, why the others stopped, and how far the cases can be trusted.
 void report_sweep(const EnsembleReport& report, std::size_t cases, const SweepOutput& output);
 void report_stopped(const StoppedByKind& stopped, std::FILE* to = stderr);
-// Notes on stderr the formulas of reductions that have no value, and in how many of the finished cases.
-void report_without_value(const EnsembleReport& report);
+// Notes on stderr initial values of the file that give way, and formulas of reductions that have no value.
+void report_notes_on_cases(const EnsembleReport& report);
 
 }  // namespace anholon::cli

@@ -100,6 +100,7 @@ CaseParameters::CaseParameters(Workspace& s, const EnsembleOptions& o)
   goes_beyond_ = may_go_beyond(whole_, s.structure);
   equations_ = compile(whole_.equations);
   of_scenario_ = parameter_values<double>(model);
+  vanishes_ = std::any_of(s.classes.begin(), s.classes.end(), [](const ConstraintClass& c) { return c.vanishes; });
   if (!o.switches) return;
   Column active;
   for (const Expr e : o.switches->active) active.push_back(s.graph().own(e));
@@ -195,6 +196,8 @@ bool CaseParameters::same_structure(const std::vector<double>& parameters) const
     for (std::size_t i = 0; i < exponents_->roots.size(); ++i)
       if (machine.value(i) == std::round(machine.value(i))) return false;
   }
+  // A constraint that vanishes in the scenario may hold in this case.
+  if (vanishes_ && parameters != of_scenario_) return false;
   // Equations may lose what determines an unknown where a factor vanishes that does not in the scenario.
   constexpr double kVanishes = 1e-100;
   bool vanishes = false;

@@ -44,6 +44,7 @@ class CaseParameters {
   std::vector<bool> hold_;           // the constraints with these formulas hold in the scenario
   std::optional<Tape> equations_;    // the equations whose structure depends on the parameters
   std::vector<double> of_scenario_;  // the parameters of the scenario
+  bool vanishes_ = false;            // a constraint vanishes identically with these
   bool goes_beyond_ = false;         // some parameters may give the equations derivatives beyond
   struct Check {                     // one condition on the roots of `bodies_`
     std::string what;

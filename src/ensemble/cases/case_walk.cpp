@@ -43,6 +43,7 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
   problem.plan = &*plan.start;
   r.outcome = consistent_state(problem, *starts_, named_);
   r.t = to_double(named_.t);
+  r.replaced = named_.replaced.note;
   if (r.outcome.ok() && plan.parameters.may_be_no_rotation())
     r.outcome = plan.parameters.oriented(narrow_parameters_, named_);
   if (!r.outcome.ok()) return CaseWay::plain;

@@ -203,12 +203,16 @@ void CaseWorker::by_simulation(const EnsembleCase& numbers, CaseResult& r) {
   const EnsembleOptions& o = plan_.options;
   for (std::size_t i = 0; i < o.varied.size(); ++i)
     if (o.varied[i].kind == Varied::Kind::parameter) own.set_parameter(o.varied[i].index, numbers.values[i]);
-  if (!plan_.plain && plan_.parameters.may_be_no_rotation()) {
+  const std::vector<StateOverride> overrides = overrides_of(o, &numbers);
+  const bool may_be_no_rotation = !plan_.plain && plan_.parameters.may_be_no_rotation();
+  if (may_be_no_rotation || (!overrides.empty() && r.replaced.empty())) {
     const std::vector<double> parameters = parameter_values<double>(*own.model);
     InitialState<double> start;
-    const InitialProblem<double> problem{own.mechanics.get(), parameters, overrides_of(o, &numbers),
+    const InitialProblem<double> problem{own.mechanics.get(), parameters, overrides,
                                          o.state.t,           nullptr,    own.start.get()};
-    if (consistent_state(problem, start).ok()) r.outcome = plan_.parameters.oriented(parameters, start);
+    const bool begins = consistent_state(problem, start).ok();
+    r.replaced = start.replaced.note;
+    if (begins && may_be_no_rotation) r.outcome = plan_.parameters.oriented(parameters, start);
     if (r.t = start.t; !r.outcome.ok()) return;
   }
   simulate_case(own, numbers, r);
@@ -219,6 +223,7 @@ void CaseWorker::by_derivation(const EnsembleCase& numbers, CaseResult& r) {
   Scenario anew;
   r.outcome = scenario_of_case(plan_.of_all, plan_.options, numbers, anew);
   r.t = anew.state.t;
+  r.replaced = anew.state.replaced.note;
   r.rows.clear();
   r.last.clear();
   r.reduced.clear();

@@ -110,6 +110,7 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
       sink.result(r);
       if (std::binary_search(to_compare.begin(), to_compare.end(), r.number)) compared.push_back(r);
       ++report.done;
+      if (!r.replaced.empty()) report.replaced.add({1, r.replaced});
       if (!r.outcome.ok()) continue;
       ++report.finished;
       if (!r.event.empty()) ++report.events[r.event];

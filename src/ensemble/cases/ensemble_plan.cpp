@@ -26,7 +26,7 @@ void EnsemblePlan::make() {
           s.elimination.pivots().empty() && !o.own_motion && !o.each_anew && model.bounds.empty() &&
           events_with_logarithms(model).empty();
   if (!plain) return;
-  start.emplace(*s.mechanics, overrides_of(o, nullptr));
+  start.emplace(*s.mechanics);
   for (std::size_t j = 0; j < s.system.size(); ++j)
     for (int k = 0; k < s.structure.d[j]; ++k) entries.push_back(s.system.symbol_node(j, static_cast<unsigned>(k)));
   Column quadratures;

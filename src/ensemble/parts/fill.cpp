@@ -150,6 +150,7 @@ void add(EnsembleReport& all, const EnsembleReport& next) {
   all.done += next.done, all.finished += next.finished, all.in_workspaces += next.in_workspaces;
   all.most_held = std::max(all.most_held, next.most_held);
   all.seconds += next.seconds, all.threads = next.threads;
+  all.replaced.add(next.replaced);
   for (const auto& [name, cases] : next.without_value) all.without_value[name].add(cases);
   if (!next.outcome.ok()) all.outcome = next.outcome;
 }

@@ -103,6 +103,7 @@ void add_report(EnsembleReport& all, const EnsembleReport& next) {
   all.seconds += next.seconds;
   all.threads = next.threads;
   for (const auto& [name, cases] : next.events) all.events[name] += cases;
+  all.replaced.add(next.replaced);
   for (const auto& [name, cases] : next.without_value) all.without_value[name].add(cases);
   if (!next.outcome.ok()) all.outcome = next.outcome;
   for (std::size_t k : next.error.cases) all.error.cases.push_back(before + k);
@@ -156,8 +157,12 @@ EnsembleReport judge_piece(const SweepPiece& piece, const std::function<bool()>&
   return report;
 }
 
-std::vector<std::string> notes_without_value(const EnsembleReport& r, const Asker& asker) {
+std::vector<std::string> notes_on_cases(const EnsembleReport& r, const Asker& asker) {
   std::vector<std::string> notes;
+  if (r.replaced.cases == 1) notes.push_back("in one case: " + r.replaced.note);
+  if (r.replaced.cases > 1)
+    notes.push_back("in " + std::to_string(r.replaced.cases) +
+                    " cases, of which these numbers are those of the first: " + r.replaced.note);
   const auto note = [&](const std::string& name, std::size_t cases, const std::string& why) {
     if (cases > 0)
       notes.push_back(name + " has no value in " + std::to_string(cases) + " of the finished cases: " + why);

@@ -18,8 +18,9 @@ void add_report(EnsembleReport& all, const EnsembleReport& next);
 std::string error_json(const CasesError& error);
 std::string residuals_json(const CasesResiduals& residuals);
 
-// Returns a sentence for each reduction that has no value in some of the finished cases, and for each cause.
-std::vector<std::string> notes_without_value(const EnsembleReport& report, const Asker& asker);
+// Returns sentences about initial values of the file that give way to others, and about each reduction that has no value
+// in some of the finished cases, for each cause.
+std::vector<std::string> notes_on_cases(const EnsembleReport& report, const Asker& asker);
 // Returns sentences that tell how far the cases can be trusted.
 std::vector<std::string> judgement_lines(const EnsembleReport& report);
 // Returns the error, the residuals and these sentences: the text that the folder keeps.

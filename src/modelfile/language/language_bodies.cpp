@@ -250,7 +250,7 @@ set = {caught = 1}
   pushes towards a growing left side. `check` states the hypothesis that reactions are ideal.
 - A vector equation gives `name.x`, `name.y`, `name.z` along ex, ey, ez. With `along = "B"` the components are those along the axes
   of the frame or body B; with `along = ["v1", "v2"]` those along these vectors, `name.1`, `name.2`. Components that vanish identically are dropped with a
-  note. `0` is also the zero vector.
+  note; those that vanish with the values of the parameters, as `s*x' = 0` with s = 0, are left out, and their multipliers are 0. `0` is also the zero vector.
 - Constraints that depend on one another share forces, such as `z = R` and the normal component of a rolling condition `vel(P) = 0`. Their multipliers
   are not determined one by one: notes name them, rows have the least ones, which depend on how the equations are scaled, and `reaction(B)` and the
   motion are determined. `along` in the vector equation, with the directions that count, leaves one constraint for each direction. A

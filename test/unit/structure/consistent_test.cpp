@@ -206,7 +206,7 @@ void same_with_memory(const MemoryCase& c) {
   Column values;
   for (const Parameter& p : model->parameters) values.push_back(p.value);
   const std::vector<N> parameters = evaluate_parameters<N>(*model->graph, values);
-  const StartPlan plan(m, c.starts.front());
+  const StartPlan plan(m);
   StartMemory<N> memory(m, plan, parameters);
   std::vector<N> heavier = parameters;
   heavier[0] *= 2;

@@ -114,7 +114,7 @@ TEST(Contradiction, OfLinearEquationsIsMinimal) {
     }
     const auto model = test::model_of(text(coordinates, list, ""));
     const Mechanics m = mechanics(*model);
-    const StartPlan plan(m, {});
+    const StartPlan plan(m);
     Stage<double> stage(m, plan.velocities, {});
     InitialState<double> state;
     state.q.assign(n, 0), state.q_origin.assign(n, Origin::chosen);

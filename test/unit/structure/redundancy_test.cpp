@@ -36,6 +36,29 @@ TEST(IndependentConstraints, KeepTheLowerOrder) {
   EXPECT_EQ(choice_of("x' = 3*y';x''' = 3*y''';x = 3*y", "\"y'\" = 1\n").independent, Indices{2});
 }
 
+TEST(IndependentConstraints, LeaveOutWhatVanishesWithTheParameters) {
+  const auto rows = [](const std::string& s, const std::string& x) {
+    const auto model = test::model_of("coordinates = [\"x\", \"y\"]\nparameters = {s = " + s +
+                                      ", k = \"s*2\"}\nparticle = [{name = \"p\", mass = 1, position = [\"x\", \"y\", "
+                                      "\"0\"]}]\nconstraint = [{name = \"c\", equation = \"k*x*(x' - y') = 0\"}]\n"
+                                      "initial = {x = " +
+                                      x + "}\n");
+    const Mechanics m = mechanics(*model);
+    Column values;
+    for (const Parameter& p : model->parameters) values.push_back(p.value);
+    const InitialProblem<double> problem{&m, evaluate_parameters<double>(*model->graph, values), {}, std::nullopt};
+    InitialState<double> state;
+    EXPECT_TRUE(consistent_state(problem, state).ok());
+    return independent_constraints(m, problem.parameters, state);
+  };
+  EXPECT_EQ(rows("0", "1").redundant, Indices{0});
+  EXPECT_EQ(rows("0", "1").vanishing, Indices{0});
+  EXPECT_EQ(rows("1", "1").independent, Indices{0});
+  // A row that vanishes at the start alone is a singularity.
+  EXPECT_EQ(rows("1", "0").independent, Indices{0});
+  EXPECT_TRUE(rows("1", "0").vanishing.empty());
+}
+
 // The rows of the two constraints are (2 x0'', 2 x11'') and (x11'', x0''). Accelerations are no part of the state, so
 // the rows are taken at generic values: at x0'' = x11'' they would be parallel, and one constraint would be called
 // redundant.
