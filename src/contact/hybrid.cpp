@@ -26,6 +26,22 @@ namespace anholon {
 
 namespace {
 
+// Leaves out the constraints whose rows change with the place or the time: they may keep a gap at this place alone.
+ContactProblem with_lasting_rows(ContactProblem p, const Workspace& s) {
+  const auto changes = [&](Expr e) {
+    const std::vector<NodeId> ids = symbols({&e, 1});
+    return std::any_of(ids.begin(), ids.end(),
+                       [&](NodeId id) { return s.mechanics->graph().node(id).kind != Kind::parameter; });
+  };
+  std::vector<std::vector<long double>> lasting;
+  for (std::size_t r = 0; r < p.Phi.size(); ++r) {
+    const Column& row = s.mechanics->Phi[s.independent[r]];
+    if (std::none_of(row.begin(), row.end(), changes)) lasting.push_back(p.Phi[r]);
+  }
+  p.Phi = std::move(lasting);
+  return p;
+}
+
 class HybridMotion {
  public:
   HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
@@ -121,8 +137,9 @@ class HybridMotion {
     }
   }
 
-  // A gap that the other contacts keep closed at rest neither opens nor closes but by round-off.
-  void note_still(const ContactProblem& p) {
+  // A gap that constraints and the other contacts keep closed at rest neither opens nor closes but by round-off.
+  void note_still(const ContactProblem& now) {
+    const ContactProblem p = with_lasting_rows(now, s_);
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
       const std::vector<long double>& n = p.contacts[c].normal;
       bool rests = bodies_.modes[c].touch == Touch::open && bodies_.near.closed(c) && !bodies_.contacts[c].under;
@@ -473,6 +490,10 @@ SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>
       held > 0 ? simulate_with_switches(s, own, options, sink) : HybridMotion(s, own, options, sink).go();
   for (const std::string& note : r.notes)
     if (options.note && is_of_support(note)) options.note(note);
+  for (const std::string& note : notes_of_redundancy(s)) {
+    if (options.note) options.note(note);
+    if (std::find(r.notes.begin(), r.notes.end(), note) == r.notes.end()) r.notes.push_back(note);
+  }
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return r;
 }

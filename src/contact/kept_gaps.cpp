@@ -122,22 +122,28 @@ class GapRows {
   Machine<long double> machine_;
 };
 
-// Another place and time, near the start.
+constexpr std::uint64_t kPlaces = 6;
+
+// Another place near the start, at a later time: from 1/3 after the start for the first seed to 341 for the last one.
 ContactState elsewhere(const Workspace& s, ContactState at, std::uint64_t seed) {
   constexpr double kMove = 0.4;
   const Graph& g = s.graph();
   for (std::size_t a = 0; a < at.q.size(); ++a)
     at.q[a] += kMove * (generic_value(g.node(s.mechanics->q[a].id), seed) - 0.5) * std::max(1.0, std::abs(at.q[a]));
-  at.t += Rational(static_cast<int>(seed), 3);
+  constexpr int kLater = 4;  // every time is four times as far from the start as the one before
+  Rational later(1, 3);
+  for (std::uint64_t k = 1; k < seed; ++k) later *= kLater;
+  at.t += later;
   return at;
 }
 
-// Returns the constraints that keep the gap of a contact everywhere; empty if it may change somewhere.
+// Returns the constraints that keep the gap of a contact everywhere; empty if it may change somewhere. A drive may keep
+// it for a while, so places at late times are looked at, too.
 std::vector<std::size_t> keepers(Workspace& s, const Contact& contact, const ContactState& at) {
   if (s.model->constraints.empty()) return {};
   GapRows rows(s, contact, at.borders);
   std::vector<std::size_t> list = rows.keep(at);
-  for (std::uint64_t seed = 1; seed <= 2 && !list.empty(); ++seed) {
+  for (std::uint64_t seed = 1; seed <= kPlaces && !list.empty(); ++seed) {
     ContactState there = elsewhere(s, at, seed);
     if (!rows.put_on_constraints(there) || rows.keep(there) != list) return {};
   }
