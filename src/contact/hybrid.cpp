@@ -138,13 +138,12 @@ class HybridMotion {
   }
 
   // A gap that constraints and the other contacts keep closed at rest neither opens nor closes but by round-off.
-  void note_still(const ContactProblem& now) {
-    const ContactProblem p = with_lasting_rows(now, s_);
+  void note_still(const ContactProblem& p) {
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
       const std::vector<long double>& n = p.contacts[c].normal;
       bool rests = bodies_.modes[c].touch == Touch::open && bodies_.near.closed(c) && !bodies_.contacts[c].under;
       for (std::size_t a = 0; rests && a < n.size(); ++a) rests = n[a] == 0 || bodies_.at.qd[a] == 0;
-      bodies_.modes[c].still = rests && others_keep_gap(p, bodies_.modes, c);
+      bodies_.modes[c].still = rests && others_keep_gap(with_lasting_rows(p, s_), bodies_.modes, c);
     }
   }
 

@@ -35,6 +35,8 @@ class GapRows {
     constexpr int kMostSteps = 30;
     constexpr double kHolds = 1e-12;
     const std::size_t n = at.q.size();
+    Matrix<double> unit(n, n);
+    for (std::size_t a = 0; a < n; ++a) unit(a, a) = 1;
     for (int step = 0; step < kMostSteps; ++step) {
       const Matrix<double> rows = at_state(at);
       std::vector<std::size_t> of;
@@ -45,18 +47,14 @@ class GapRows {
         if (order(k) == 0) miss = std::max(miss, std::abs(residual(k)));
       if (!std::isfinite(miss)) return false;
       if (miss <= kHolds) return true;
-      Matrix<double> gram(of.size(), of.size());
-      std::vector<double> right, weights;
+      Matrix<double> kept(of.size(), n);
+      std::vector<double> missed, change;
       for (std::size_t i = 0; i < of.size(); ++i) {
-        right.push_back(residual(of[i]));
-        for (std::size_t j = 0; j < of.size(); ++j)
-          for (std::size_t a = 0; a < n; ++a) gram(i, j) += rows(of[i], a) * rows(of[j], a);
+        missed.push_back(-residual(of[i]));
+        for (std::size_t a = 0; a < n; ++a) kept(i, a) = rows(of[i], a);
       }
-      Lu<double> lu;
-      if (!lu.factor(gram)) return false;
-      lu.solve(right, weights);
-      for (std::size_t i = 0; i < of.size(); ++i)
-        for (std::size_t a = 0; a < n; ++a) at.q[a] -= rows(of[i], a) * weights[i];
+      if (!least_change(unit, kept, missed, change)) return false;
+      for (std::size_t a = 0; a < n; ++a) at.q[a] += change[a];
     }
     return false;
   }

@@ -95,14 +95,11 @@ std::vector<std::string> notes_of_redundancy(const Scenario& s) {
   const Model& m = *s.model;
   std::vector<std::string> list;
   for (const bool vanish : {true, false}) {
-    constexpr std::size_t kNamed = 8;
     std::vector<std::string> names;
     for (const std::size_t r : s.redundant)
       if (s.classes[r].vanishes == vanish) names.push_back("'" + m.constraints[r].name + "'");
     if (names.empty()) continue;
     const bool one = names.size() == 1;
-    const std::size_t more = names.size() - std::min(names.size(), kNamed);
-    if (more > 0) names.resize(kNamed), names.push_back(std::to_string(more) + " more");
     list.push_back((one ? "constraint " : "constraints ") + joined_names(names) +
                    (vanish ? one ? " vanishes identically with these values of the parameters: it is left out"
                                  : " vanish identically with these values of the parameters: they are left out"

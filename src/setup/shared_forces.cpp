@@ -6,6 +6,7 @@
 #include <set>
 
 #include "expr/generic_point.h"
+#include "modelfile/names/multiplier_names.h"
 #include "setup/eliminate.h"
 
 namespace anholon {
@@ -39,11 +40,6 @@ InitialState<double> elsewhere(const Mechanics& m, InitialState<double> state, s
 }
 
 bool is_multiplier(const Node& n) { return n.kind == Kind::multiplier; }
-
-bool holds_multiplier(Expr e) {
-  const std::vector<NodeId> all = symbols({&e, 1});
-  return std::any_of(all.begin(), all.end(), [&](NodeId id) { return is_multiplier(e.graph->node(id)); });
-}
 
 // Tells by numbers whether a formula changes with the multipliers.
 class Change {

@@ -110,12 +110,12 @@ std::vector<Warning> warnings_of_jumps(const Course<N>& course, const Watch<Wide
   const auto warn = [&](const std::string& what, const std::string& of) {
     const std::string jump = "if a formula in " + of +
                              " jumps on the way (sign, piecewise, a table), or its rate does, the impulse that this "
-                             "needs is in no equation: take a smooth function, or let an event set what changes; ";
+                             "needs is in no equation: take a smooth function, or let an event set what changes";
     list.push_back({what, taylor
-                              ? jump + "otherwise look at the digits to trust"
+                              ? jump + "; otherwise look at the digits to trust"
                               : "make the tolerance smaller: if the change becomes smaller with it, the tolerance is "
                                 "too large for a motion of this length; otherwise, " +
-                                    jump.substr(0, jump.size() - 2)});
+                                    jump});
   };
   const std::size_t first = watch.tracks().size() - o.conserved.size();
   for (std::size_t i = 0; i < o.conserved.size() && !something_set; ++i)

@@ -68,11 +68,6 @@ bool holds_contact_force(const std::vector<Contact>& contacts, std::size_t monit
                      [&](const Formula& f) { return f.of == Formula::Of::monitor && f.index == monitor; });
 }
 
-bool holds_multiplier(Expr e) {
-  const std::vector<NodeId> ids = symbols({&e, 1});
-  return std::any_of(ids.begin(), ids.end(), [&](NodeId id) { return e.graph->node(id).kind == Kind::multiplier; });
-}
-
 // Returns the formula of a monitor, or one that is written out.
 Expr formula_of(const std::string& word, std::size_t at, const std::string& text, const OpenModel& model,
                 const std::vector<Contact>& moving) {

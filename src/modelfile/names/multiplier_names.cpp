@@ -1,5 +1,7 @@
 #include "modelfile/names/multiplier_names.h"
 
+#include <algorithm>
+
 #include "modelfile/names/names.h"
 
 namespace anholon {
@@ -53,6 +55,12 @@ Value evaluate_with_multipliers(const FormulaText& formula, Names& names, const 
   if (multipliers.empty()) throw Failure(syntax.span, "the model has no constraints, and so no multipliers");
   throw Failure(syntax.span, "there are " + std::to_string(multipliers.size()) + " multipliers",
                 "lambda." + multipliers[0]);
+}
+
+bool holds_multiplier(Expr formula) {
+  const std::vector<NodeId> ids = symbols({&formula, 1});
+  return std::any_of(ids.begin(), ids.end(),
+                     [&](NodeId id) { return formula.graph->node(id).kind == Kind::multiplier; });
 }
 
 }  // namespace anholon

@@ -11,4 +11,7 @@ namespace anholon {
 // those of a model in one mode of its contacts, which the file does not declare. Throws Failure.
 Value evaluate_with_multipliers(const FormulaText& formula, Names& names, const std::vector<std::string>& multipliers);
 
+// True if a multiplier occurs in the formula.
+bool holds_multiplier(Expr formula);
+
 }  // namespace anholon
