@@ -4,12 +4,14 @@
 usage: same_bits.py PROGRAM OTHER
 
 Cases: test/golden/good/*.md and test/determinism/*.md (the latter need no expected output), and the equations of every
-shipped model. Lines that match a … of the case, such as timings, are not compared. The exit code is 77 if OTHER is not built.
+shipped model. Lines that match a … of the case, such as timings, are not compared. A sweep into a folder needs --chunk,
+because the size of its parts follows the measured time of a case otherwise. The exit code is 77 if OTHER is not built.
 """
 
 import difflib
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -30,6 +32,12 @@ def transcript(path, program):
                 wild = index is not None and golden.WILD in expected[index]
                 output.append(expected[index] if wild else line)
         return output, scratch.outputs()
+
+
+def sweeps_of_measured_parts(path):
+    """Returns the commands of a case that make the folder of a sweep and leave the size of its parts to a measured time."""
+    _, steps = golden.parse(path.read_text(encoding="utf-8").split("\n"))
+    return [step.command for step in steps if re.search(r"\bsweep .*-o \S+/(\s|$)", step.command) and "--chunk" not in step.command]
 
 
 def is_certificate(text):
@@ -64,6 +72,10 @@ def main(program, other):
     failed = 0
     for path in cases:
         shown = os.path.relpath(path, golden.ROOT)
+        if unsized := sweeps_of_measured_parts(path):
+            failed += 1
+            print("\n".join([f"{shown}: give --chunk to", *unsized]))
+            continue
         (text, files), (text2, files2) = transcript(path, program), transcript(path, other)
         differences = list(difflib.unified_diff(text, text2, program, other, lineterm="", n=1))
         differences += [
