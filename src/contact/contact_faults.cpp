@@ -1,6 +1,7 @@
 #include "contact/contact_faults.h"
 
 #include "contact/law/impact.h"
+#include "contact/law/shared_forces.h"
 #include "numeric/told_time.h"
 #include "observe/angles.h"
 
@@ -80,11 +81,14 @@ Outcome ContactFaults::lies_flat(bool nearly) {
 }
 
 Outcome ContactFaults::undecided(std::size_t modes) const {
+  const ContactProblem p = bodies_.with_touching();
   std::string names;
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
     if (!bodies_.near.closed(c) || bodies_.contacts[c].under) continue;
     names += (names.empty() ? "'" : ", '") + bodies_.contacts[c].name + "'";
-    if (modes == 0 && bodies_.dynamics.loses_rank(c)) return rank_lost(bodies_.contacts[c], now());
+    if (modes > 0) continue;
+    if (others_keep_gap(p, ContactModes(bodies_.contacts.size()), c)) return led_into(bodies_.contacts[c], now());
+    if (bodies_.dynamics.loses_rank(c)) return rank_lost(bodies_.contacts[c], now());
   }
   return painleve(modes, names + " ", now());
 }

@@ -26,17 +26,25 @@ namespace anholon {
 
 namespace {
 
-// Leaves out the constraints whose rows change with the place or the time: they may keep a gap at this place alone.
+// Leaves out the constraints that may keep a gap at this place or time alone: their rows change, or their rates depend
+// on more than the velocities, as those of a drive do.
 ContactProblem with_lasting_rows(ContactProblem p, const Workspace& s) {
-  const auto changes = [&](Expr e) {
+  const Graph& g = s.mechanics->graph();
+  // True if a formula contains no more than parameters, and coordinates or their derivatives of this order.
+  const auto only = [&](Expr e, std::optional<int> order) {
     const std::vector<NodeId> ids = symbols({&e, 1});
-    return std::any_of(ids.begin(), ids.end(),
-                       [&](NodeId id) { return s.mechanics->graph().node(id).kind != Kind::parameter; });
+    return std::all_of(ids.begin(), ids.end(), [&](NodeId id) {
+      const Node& n = g.node(id);
+      return n.kind == Kind::parameter || (n.kind == Kind::jet && n.order == order);
+    });
   };
   std::vector<std::vector<long double>> lasting;
   for (std::size_t r = 0; r < p.Phi.size(); ++r) {
-    const Column& row = s.mechanics->Phi[s.independent[r]];
-    if (std::none_of(row.begin(), row.end(), changes)) lasting.push_back(p.Phi[r]);
+    const std::size_t of = s.independent[r];
+    const Column& row = s.mechanics->Phi[of];
+    const auto constant = [&](Expr e) { return only(e, std::nullopt); };
+    if (std::all_of(row.begin(), row.end(), constant) && only(s.mechanics->phi[of], s.mechanics->order[of]))
+      lasting.push_back(p.Phi[r]);
   }
   p.Phi = std::move(lasting);
   return p;
@@ -232,20 +240,28 @@ class HybridMotion {
     return find();
   }
 
-  // Leaves contacts open that were open, and that nothing presses now.
+  // Leaves contacts open that nothing presses now, and that were open, or whose gap the constraints keep closed here
+  // alone: a pendulum at its lowest point touches the floor and carries nothing.
   void leave_open(ContactProblem& p, std::vector<ContactSolution>& list) const {
     const long double least = kRest * size_of_forces(p, list[0]);
     ContactProblem open = p;
     bool any = false;
-    for (std::size_t c = 0; c < bodies_.modes.size(); ++c) {
-      if (bodies_.modes[c].touch != Touch::open || list[0].modes[c].touch == Touch::open || p.contacts[c].under)
-        continue;
-      if (bodies_.near.has_reached(c) || list[0].normal[c] > least) continue;
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      if (list[0].modes[c].touch == Touch::open || p.contacts[c].under || list[0].normal[c] > least) continue;
+      const bool was_open =
+          c < bodies_.modes.size() && bodies_.modes[c].touch == Touch::open && !bodies_.near.has_reached(c);
+      if (!was_open && !kept_here_alone(p, list[0].modes, c)) continue;
       open.contacts[c].may_touch = false, any = true;
     }
     if (!any) return;
     std::vector<ContactSolution> found = consistent_modes(open);
     if (found.size() == 1) p = std::move(open), list = std::move(found);
+  }
+
+  // True if others keep the gap of a closed contact, and would not without the constraints whose rows change.
+  bool kept_here_alone(const ContactProblem& p, ContactModes modes, std::size_t contact) const {
+    modes[contact].touch = Touch::open;
+    return others_keep_gap(p, modes, contact) && !others_keep_gap(with_lasting_rows(p, s_), modes, contact);
   }
 
   // Computes impacts where a closed gap shrinks: at a border of a surface, first those on the side from which the

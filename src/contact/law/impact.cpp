@@ -106,6 +106,15 @@ Outcome rank_lost(const Contact& contact, double t) {
       t);
 }
 
+Outcome led_into(const Contact& contact, double t) {
+  return told({OutcomeKind::inconsistent,
+               "the constraints lead the bodies through the surface of contact '" + contact.name + "'" + at_time(t) +
+                   ", and no force of the contact changes this",
+               "start or end the motion elsewhere, or change the constraints: they decide alone how the gap changes",
+               contact.span},
+              t);
+}
+
 // The hint for a contact whose gap has no derivatives.
 static std::string beside_or_round(const Contact& contact) {
   if (contact.shape == "disc" || contact.shape == "torus")

@@ -16,6 +16,8 @@ Outcome painleve(std::size_t modes, const std::string& contacts, double t);
 
 // The outcome if a contact alone loses rank (ContactDynamics::loses_rank), so that its modes cannot be judged.
 Outcome rank_lost(const Contact& contact, double t);
+// The outcome if the constraints decide how the gap of a closed contact changes, and close it further.
+Outcome led_into(const Contact& contact, double t);
 
 // The outcomes if the gap of a closed contact has no derivatives (ContactDynamics::has_derivatives), and if its slip
 // velocity has no value or no derivatives (ContactDynamics::has_slip).
