@@ -452,7 +452,9 @@ class HybridMotion {
       const std::optional<double> limit = accumulation_.limit(c);
       const bool rests =
           bodies_.near.gap_rate(c) != 0 && (accumulation_.near_limit(c, t) || bodies_.near.hardly_rises(c));
-      if (rests || bodies_.near.gap_rate(c) == 0) stops[c].touch = Touch::slips;
+      // What does not slip holds as the others stop: the loss of its neighbour's velocity would make it slip.
+      if (rests || bodies_.near.gap_rate(c) == 0)
+        stops[c].touch = bodies_.near.hardly_slips(c) ? Touch::sticks : Touch::slips;
       if (!rests) continue;
       any = true;
       if (limit && bodies_.fast(c)) stops[c].direction = bodies_.dynamics.accelerations().contacts[c].direction;
@@ -462,7 +464,7 @@ class HybridMotion {
     if (!any) return;
     stop_at_rest(stops);
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
-      if (stops[c].touch != Touch::open && bodies_.near.hardly_slips(c)) stops[c].touch = Touch::sticks;
+      if (stops[c].touch == Touch::slips && bodies_.near.hardly_slips(c)) stops[c].touch = Touch::sticks;
     stop_at_rest(stops);
   }
 

@@ -5,6 +5,7 @@
 
 #include "expr/generic_point.h"
 #include "numeric/linear.h"
+#include "setup/notes_on_multipliers.h"
 
 namespace anholon {
 

@@ -244,7 +244,7 @@ class Builder {
   // these formulas do not make. The formulas hold for all states.
   bool is_undetermined(Expr e) const {
     const Node& n = e.graph->node(e.id);
-    return n.kind == Kind::multiplier && !s_.shared.determined_everywhere(n.index) &&
+    return n.kind == Kind::multiplier && !s_.undetermined.determined_everywhere(n.index) &&
            !s_.model->constraints[n.index].by;
   }
 

@@ -24,7 +24,7 @@ std::vector<Contact> read_all_contacts(const Item& root, const std::vector<Conta
   contacts.insert(contacts.end(), switched.begin(), switched.end());
   settle_states_in_contacts(model, contacts, diagnostics);
   settle_contact_forces(scope, model, contacts, diagnostics);
-  scope.contact_forces.close();
+  scope.forces.of_contacts.close();
   return contacts;
 }
 

@@ -466,7 +466,7 @@ class DerivedNames final : public Names {
 
   std::shared_ptr<Reader> reader_;
   Scope& scope_;
-  Scope::Multipliers multipliers_{scope_};
+  ForcesInFormulas::Allowed multipliers_{scope_.forces};
 };
 
 }  // namespace

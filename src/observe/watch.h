@@ -94,7 +94,7 @@ class Watch {
   // True if there are redundant constraints, which have to follow from the others.
   bool any_redundant() const { return redundant_.any(); }
   // The dependencies of the constraints at the last point that was seen.
-  SharedForces shared() const { return redundant_.shared(); }
+  UndeterminedMultipliers undetermined() const { return redundant_.undetermined(); }
   // Fails if they do not follow any more.
   Outcome still_redundant(const Expansion<W>& point, SimulationReport& report);
   // The monitors of the model, then the integrals.

@@ -14,7 +14,7 @@ Hypothesis hypothesis(const ConstraintClass& c, int order) {
 }
 
 // Returns the constraints of which a redundant one is a combination.
-std::vector<std::size_t> made_of(const SharedForces& shared, std::size_t r) {
+std::vector<std::size_t> made_of(const UndeterminedMultipliers& shared, std::size_t r) {
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < shared.redundant.size(); ++k)
     for (std::size_t i = 0; shared.redundant[k] == r && i < shared.dependencies[k].size(); ++i)
@@ -40,7 +40,7 @@ std::vector<ConstraintFacts> constraint_facts(Workspace& s) {
   std::vector<ConstraintFacts> list;
   for (std::size_t r = 0; r < s.classes.size(); ++r) {
     ConstraintFacts c{hypothesis(s.classes[r], s.mechanics->order[r]), power_factor(*s.mechanics, r), {}};
-    if (s.classes[r].redundant) c.follows_from = made_of(s.shared, r);
+    if (s.classes[r].redundant) c.follows_from = made_of(s.undetermined, r);
     list.push_back(std::move(c));
   }
   return list;

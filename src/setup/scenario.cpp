@@ -7,6 +7,7 @@
 #include "expr/normal.h"
 #include "expr/table.h"
 #include "model/exponents.h"
+#include "setup/notes_on_multipliers.h"
 #include "setup/start/large_angles.h"
 #include "setup/start/orientations.h"
 #include "structure/branch.h"
@@ -107,10 +108,10 @@ std::vector<std::string> notes_of_redundancy(const Scenario& s) {
                            : " depend on the others at the initial state: they are left out of the equations, and "
                              "watched"));
   }
-  for (const std::vector<std::size_t>& group : s.shared.groups())
-    list.push_back(note_of_shared_force(m, s.shared, group, multiplier_orders(s) == 0));
+  for (const std::vector<std::size_t>& group : s.undetermined.groups())
+    list.push_back(note_of_undetermined(m, s.undetermined, group, multiplier_orders(s) == 0));
   for (const NamedFormula& f : formulas_with_multipliers(m))
-    if (const std::string text = note_of_formula(m, s.shared, s.state, f); !text.empty()) list.push_back(text);
+    if (const std::string text = note_of_formula(m, s.undetermined, s.state, f); !text.empty()) list.push_back(text);
   return list;
 }
 
@@ -168,7 +169,7 @@ ProbeHints hints_at(const InitialState<double>& state) {
 // Chooses independent constraints at the state; those that follow from them are left out.
 static void choose_constraints(const std::vector<double>& parameters, Scenario& s) {
   IndependentConstraints rows = independent_constraints(*s.mechanics, parameters, s.state);
-  s.shared = shared_forces(*s.mechanics, parameters, s.state, rows);
+  s.undetermined = undetermined_multipliers(*s.mechanics, parameters, s.state, rows);
   s.independent = std::move(rows.independent);
   s.redundant = std::move(rows.redundant);
   for (std::size_t r : rows.vanishing) s.classes[r].vanishes = true;
@@ -280,7 +281,7 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
   if (initial.ok() && numbers) initial = admissible(*model, parameters, s.state);
   s.independent.clear();
   s.redundant.clear();
-  s.shared = {};
+  s.undetermined = {};
   if (initial.ok() && numbers)
     choose_constraints(parameters, s);
   else
@@ -342,8 +343,8 @@ std::optional<Outcome> begin_anew(Workspace& s, const StateChoice& choice) {
 }
 
 Workspace::Workspace(const Scenario& from) : own_model_(clone(*from.model)) {
-  const auto& [model_of, nodes, mechanics_of, classes_of, start_of, state_of, independent_of, redundant_of, shared_of,
-               elimination_of, system_of, structure_of, routh_of, routh_structure_of, notes_of] = from;
+  const auto& [model_of, nodes, mechanics_of, classes_of, start_of, state_of, independent_of, redundant_of,
+               undetermined_of, elimination_of, system_of, structure_of, routh_of, routh_structure_of, notes_of] = from;
   static_cast<void>(model_of);
   const auto own = [&](auto& part) {
     for_each_expression(part, [&](Expr& e) {
@@ -370,7 +371,7 @@ Workspace::Workspace(const Scenario& from) : own_model_(clone(*from.model)) {
   state = state_of;
   independent = independent_of;
   redundant = redundant_of;
-  shared = shared_of;
+  undetermined = undetermined_of;
   elimination = elimination_of.of(*mechanics);
   own(elimination);
   system = *own_system(system_of);
@@ -385,8 +386,8 @@ void Workspace::set_parameter(std::size_t parameter, const Rational& value) {
 }
 
 void for_each_expression(Scenario& s, const ExprVisitor& f) {
-  auto& [model, given_nodes, mechanics, classes, start, state, independent, redundant, shared, elimination, system,
-         structure, routh, routh_structure, notes] = s;
+  auto& [model, given_nodes, mechanics, classes, start, state, independent, redundant, undetermined, elimination,
+         system, structure, routh, routh_structure, notes] = s;
   for_each_expression(const_cast<Model&>(*model), f);
   for_each_expression(*mechanics, f);
   if (start) for_each_expression(const_cast<StartPlan&>(*start), f);
@@ -395,7 +396,7 @@ void for_each_expression(Scenario& s, const ExprVisitor& f) {
   if (routh) for_each_expression(const_cast<System&>(*routh), f);
   // The other members hold numbers and words.
   static_cast<void>(given_nodes), static_cast<void>(classes), static_cast<void>(state);
-  static_cast<void>(independent), static_cast<void>(redundant), static_cast<void>(shared);
+  static_cast<void>(independent), static_cast<void>(redundant), static_cast<void>(undetermined);
   static_cast<void>(structure), static_cast<void>(routh_structure), static_cast<void>(notes);
 }
 

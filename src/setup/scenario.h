@@ -8,7 +8,7 @@
 #include "modelfile/read.h"
 #include "program/expansion.h"
 #include "setup/eliminate.h"
-#include "setup/shared_forces.h"
+#include "setup/undetermined_multipliers.h"
 #include "structure/consistent.h"
 #include "tape/bind.h"
 
@@ -44,8 +44,8 @@ struct Scenario {
   std::shared_ptr<const StartPlan> start;  // null without numbers
   InitialState<double> state;              // consistent, in double
   std::vector<std::size_t> independent, redundant;
-  SharedForces shared;      // of the redundant constraints
-  Elimination elimination;  // the elimination of forms without multipliers
+  UndeterminedMultipliers undetermined;  // of the redundant constraints
+  Elimination elimination;               // the elimination of forms without multipliers
   System system;
   Structure structure;
   // Routh's system, if the initial state holds more than positions and velocities or the equations have several

@@ -36,6 +36,12 @@ class RunEnd {
   // The time at which the motion ends.
   W time() const { return reached_ ? *reached_ : of_.course.time(); }
 
+  // Tells the followed formulas at the start of a motion that ends there.
+  void end_at_start() {
+    if (of_.report.outcome.ok() && of_.options.stopped && !of_.options.followed.empty() && of_.course.by_taylor())
+      tell_last_values(time());
+  }
+
   // Explains why the motion cannot be continued, and makes the row of the last good state.
   void stop() {
     explain();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "setup/notes_on_multipliers.h"
 #include "simulation/first_pull.h"
 #include "simulation/run_end.h"
 #include "simulation/run_rows.h"
@@ -100,10 +101,10 @@ class RunReport {
   // Names the multipliers that are not determined at the start or at the end. The start has notes of its own.
   void fill_undetermined() {
     const Scenario& s = of_.s;
-    const SharedForces end = of_.watch.shared();
+    const UndeterminedMultipliers end = of_.watch.undetermined();
     std::vector<std::size_t> all, later;
     for (std::size_t r = 0; r < s.model->constraints.size(); ++r) {
-      const bool first = !s.shared.group_of(r).empty(), last = !end.group_of(r).empty();
+      const bool first = !s.undetermined.group_of(r).empty(), last = !end.group_of(r).empty();
       if (first || last) all.push_back(r);
       if (last && !first) later.push_back(r);
     }
@@ -111,7 +112,7 @@ class RunReport {
       note("at the end also " + multiplier_names(*s.model, later) + (later.size() == 1 ? " is" : " are") +
            " not determined: constraints that depend on one another share forces");
     for (const NamedFormula& f : formulas_with_multipliers(*s.model))
-      if (note_of_formula(*s.model, s.shared, s.state, f).empty())
+      if (note_of_formula(*s.model, s.undetermined, s.state, f).empty())
         if (const std::string text = note_of_formula(*s.model, end, s.state, f); !text.empty()) note(text);
     if (of_.report.error)
       for (const std::size_t r : all) of_.report.error->undetermined.push_back(multiplier_name(*s.model, r));

@@ -222,7 +222,10 @@ class Run {
     if (report_.outcome.ok() && course_.steps() > 0 && shown_.at(course_.time()).ok())
       watch_.end(shown_.point(), shown_.work(), report_);
     if (o_.save) save();
-    if (!report_.outcome.ok()) end_.stop();
+    if (!report_.outcome.ok())
+      end_.stop();
+    else if (course_.steps() == 0)
+      end_.end_at_start();
   }
 
   // Limits the stretch to the steps after which nothing is due.

@@ -177,8 +177,8 @@ std::vector<bool> StateSolver<N>::positions_of_options() const {
   return of;
 }
 
-// Releases the values of the file in a contradiction, or leaves out its conditions on values of options alone if it has
-// no values of the file. Returns false if it has neither.
+// Releases the values of the file in a contradiction. If it has none, leaves out its conditions on values of options
+// alone, or its only condition, unless positions may move so that this one holds. Returns false if nothing gives way.
 template <Number N>
 bool StateSolver<N>::release(const Stage<N>& stage, const Contradiction<N>& c, std::vector<bool>& kept) {
   ReplacedByOptions<N>& replaced = state_.replaced;
@@ -192,11 +192,14 @@ bool StateSolver<N>::release(const Stage<N>& stage, const Contradiction<N>& c, s
       replaced.values.push_back({n, *state_.value(n)});
     }
   }
-  if (any) {
+  const auto note_options = [&] {
     for (const Node& n : options_in(stage, c))
       if (std::none_of(replaced.options.begin(), replaced.options.end(),
                        [&](const Node& o) { return o.kind == n.kind && o.index == n.index && o.order == n.order; }))
         replaced.options.push_back(n);
+  };
+  if (any) {
+    note_options();
     return true;
   }
   const auto of_options_alone = [&](std::size_t i) {
@@ -206,7 +209,16 @@ bool StateSolver<N>::release(const Stage<N>& stage, const Contradiction<N>& c, s
   };
   for (std::size_t i : c.equations)
     if (stage.equation(i).condition && kept[i] && of_options_alone(i)) kept[i] = false, any = true;
-  return any;
+  const bool positions_may_move = plan_ && plan_->both && !by_flow_ && stage.unknown(0).order == 1;
+  if (any || !plan_ || positions_may_move) return any;
+  std::vector<std::size_t> conditions;
+  for (std::size_t i : c.equations)
+    if (stage.equation(i).condition && kept[i]) conditions.push_back(i);
+  if (conditions.size() != 1) return false;
+  note_options();
+  kept[conditions[0]] = false;
+  replaced.conditions.push_back(stage.equation(conditions[0]).what);
+  return true;
 }
 
 // Notes the values of the file that options replace, in place of an earlier note.
@@ -221,6 +233,7 @@ void StateSolver<N>::say_replaced() {
     const auto [old, now] = told_apart(was, is);
     parts.push_back(entry_name(n) + " = " + old + (parts.empty() ? " is replaced by " : " by ") + now);
   }
+  for (const std::string& condition : replaced.conditions) parts.push_back(condition + " is left out");
   if (parts.empty()) return;
   std::string text, options;
   for (std::size_t k = 0; k < std::min(parts.size(), kNamed); ++k) text += (k ? ", " : "") + parts[k];

@@ -39,9 +39,10 @@ struct ReplacedValue {
 template <Number N>
 struct ReplacedByOptions {
   std::vector<ReplacedValue<N>> values;
-  std::vector<Node> options;         // values that they clash with
-  std::string note;                  // empty if every value stays; also among the notes of the state
-  std::optional<std::size_t> place;  // its index there
+  std::vector<std::string> conditions;  // left out: "condition 'x^2 = 4'"
+  std::vector<Node> options;            // values that they clash with
+  std::string note;                     // empty if every value stays; also among the notes of the state
+  std::optional<std::size_t> place;     // its index there
 };
 
 template <Number N>

@@ -157,12 +157,14 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   options.kernel = o.kernel;
   Reducer reducer(o.reductions, o.tolerance.get_d());
   const std::size_t ends = o.reductions.ends.size(), formulas = o.reductions.formulas.size();
+  bool any_step = false;
   if (formulas + ends > 0) {
     options.followed = formulas_in(own, o.reductions.formulas, o, {});
     const Column of_ends = formulas_in(own, o.reductions.ends, o, {});
     options.followed.insert(options.followed.end(), of_ends.begin(), of_ends.end());
     options.followed_at_ends = ends;
     options.dense = [&, ends, formulas](const StepPolynomials& step) {
+      any_step = true;
       (void)reducer.step({step.end - step.begin, step.one_sided ? 0 : step.order - 1, step.followed,
                           [&](std::size_t i, double x) {
                             const auto [value, made_of] = step.followed_value(i, x);
@@ -175,6 +177,15 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
       reducer.ends(std::move(values));
     };
     options.stopped = [&, ends, formulas](const std::function<double(std::size_t)>& followed) {
+      if (!any_step) {
+        std::vector<double> at_start;
+        for (std::size_t i = 0; i < formulas; ++i) at_start.push_back(followed(i));
+        (void)reducer.step({0,
+                            0,
+                            [&](std::size_t i, int) { return at_start[i]; },
+                            [&](std::size_t i, double) { return FormulaValue{at_start[i], std::abs(at_start[i])}; },
+                            {}});
+      }
       std::vector<double> values;
       for (std::size_t i = 0; i < ends; ++i) values.push_back(followed(formulas + i));
       reducer.ends(std::move(values));

@@ -1,5 +1,7 @@
 #include "ensemble/reduce/reduction_notes.h"
 
+#include "setup/notes_on_multipliers.h"
+
 namespace anholon {
 
 std::vector<std::string> notes_of_formulas(const Scenario& s, const Reductions& reductions) {
@@ -11,7 +13,8 @@ std::vector<std::string> notes_of_formulas(const Scenario& s, const Reductions& 
   }
   std::vector<std::string> list;
   for (const NamedFormula& f : all)
-    if (const std::string text = note_of_formula(*s.model, s.shared, s.state, f); !text.empty()) list.push_back(text);
+    if (const std::string text = note_of_formula(*s.model, s.undetermined, s.state, f); !text.empty())
+      list.push_back(text);
   return list;
 }
 

@@ -89,12 +89,13 @@ void ConstraintReader::read(const Item& root) {
       if (by) keep_by(*by, first, scope_, model_);
       if (active) switch_by(*active, first);
     };
-    const Item* equation = c.find("equation");
-    if (!equation) throw Failure(c.span, "a constraint has no equation", "equation = \"x' = 0\"");
     const Item* named = c.find("name");
     if (named && named->kind != Item::Kind::string) throw Failure(named->span, "a name is a text");
     const std::string name = named ? normal_name(named->text()) : "constraint" + std::to_string(k + 1);
     if (!is_element_name(name)) throw Failure(named->span, "'" + name.substr(0, 40) + "' is not a name");
+    scope_.forces.begin(name);
+    const Item* equation = c.find("equation");
+    if (!equation) throw Failure(c.span, "a constraint has no equation", "equation = \"x' = 0\"");
     const std::vector<Syntax> sides = scope_.equation(*equation);
     const std::string text = equation_text(equation->formula, sides);
     Value left = evaluate(sides[0], scope_), right = evaluate(sides[1], scope_);
@@ -105,6 +106,7 @@ void ConstraintReader::read(const Item& root) {
       if (along) throw Failure(along->key_span, "'along' goes with an equation of vectors, this is one of numbers");
       add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), text, place, of_name);
       settle();
+      scope_.forces.end(name);
       return;
     }
     const Vector difference =
@@ -124,6 +126,7 @@ void ConstraintReader::read(const Item& root) {
       model_.notes.push_back("constraint '" + name + "': " + dropped + " vanishes identically and is dropped");
     for (const auto& [full, phi] : kept) add_constraint(full, phi, text, place, of_name);
     settle();
+    scope_.forces.end(name);
   });
 }
 

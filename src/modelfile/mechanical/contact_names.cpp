@@ -16,8 +16,8 @@ void declare_contacts(const Item& root, Scope& scope) {
         if (!word || word->kind != Item::Kind::boolean || !word->truth) continue;
       }
       const Item* named = c.find("name");
-      scope.contact_forces.declare(named && named->kind == Item::Kind::string ? normal_name(named->text())
-                                                                              : section + std::to_string(k + 1));
+      scope.forces.of_contacts.declare(named && named->kind == Item::Kind::string ? normal_name(named->text())
+                                                                                  : section + std::to_string(k + 1));
     }
   }
 }

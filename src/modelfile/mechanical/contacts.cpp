@@ -436,7 +436,7 @@ static bool is_linear_in_forces(Graph& g, Expr rate) {
 }
 
 void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics) {
-  const auto& asked = scope.contact_forces.asked();
+  const auto& asked = scope.forces.of_contacts.asked();
   if (asked.empty()) return;
   auto found = std::make_shared<ContactForces>();
   std::vector<bool>

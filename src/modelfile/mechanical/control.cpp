@@ -203,7 +203,7 @@ static void read_output(const Item& i, Scope& scope, Model& model, Diagnostics& 
 void read_outputs(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
   const Item* section = find_section(root, "output", diagnostics);
   if (!section) return;
-  const Scope::Multipliers allowed(scope);
+  const ForcesInFormulas::Allowed allowed(scope.forces);
   for (const Item& i : section->items) collect(diagnostics, [&] { read_output(i, scope, model, diagnostics); }, i);
 }
 

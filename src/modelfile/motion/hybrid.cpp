@@ -49,7 +49,7 @@ void no_multiplier(const Model& model, Expr e, Span span, const std::string& wha
 class EventReader {
  public:
   EventReader(Scope& scope, Model& model, Diagnostics& diagnostics)
-      : scope_(scope), allowed_(scope), model_(model), diagnostics_(diagnostics) {}
+      : scope_(scope), allowed_(scope.forces), model_(model), diagnostics_(diagnostics) {}
 
   void read(const Item& e, std::size_t number) {
     check_keys(e, "an event", "event", diagnostics_);
@@ -136,7 +136,7 @@ class EventReader {
   }
 
   Scope& scope_;
-  const Scope::Multipliers allowed_;
+  const ForcesInFormulas::Allowed allowed_;
   Model& model_;
   Diagnostics& diagnostics_;
 };
@@ -155,7 +155,7 @@ void declare_hybrid(const Item& root, Scope& scope, Model& model, Diagnostics& d
 void read_states(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
   const Item* section = root.find("state");
   if (!section || section->kind != Item::Kind::table) return;
-  const Scope::Multipliers allowed(scope);
+  const ForcesInFormulas::Allowed allowed(scope.forces);
   for (const Item& i : section->items) {
     const auto z =
         std::find_if(model.states.begin(), model.states.end(), [&](const StateVariable& s) { return s.name == i.key; });

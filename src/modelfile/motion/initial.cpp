@@ -92,6 +92,13 @@ class InitialReader {
     list.push_back({symbol, constant(i), i.key_span});
   }
 
+  std::size_t constraint(const std::string& name, Span span) {
+    const std::vector<std::string>& names = model_.names.multipliers;
+    const bool known = std::find(names.begin(), names.end(), name) != names.end();
+    if (!known && scope_.forces.has_no_value(name)) throw silent_failure();
+    return index(names, name, span, "constraint");
+  }
+
   std::size_t index(const std::vector<std::string>& names, const std::string& name, Span span, const char* what) {
     const auto it = std::find(names.begin(), names.end(), name);
     if (it != names.end()) return static_cast<std::size_t>(it - names.begin());
@@ -154,7 +161,7 @@ class InitialReader {
           diagnostics_,
           [&] {
             if (v.kind == Item::Kind::table) return multipliers(v, prefix + v.key + ".", order, list);
-            const std::size_t k = index(model_.names.multipliers, prefix + v.key, v.key_span, "constraint");
+            const std::size_t k = constraint(prefix + v.key, v.key_span);
             add(list, v, model_.graph->multiplier(static_cast<std::uint32_t>(k), order));
           },
           v);
@@ -168,7 +175,7 @@ class InitialReader {
           diagnostics_,
           [&] {
             if (v.kind == Item::Kind::table) return branch(v, prefix + v.key + ".");
-            const std::size_t k = index(model_.names.multipliers, prefix + v.key, v.key_span, "constraint");
+            const std::size_t k = constraint(prefix + v.key, v.key_span);
             std::string text;
             for (char c : v.text())
               if (c != ' ') text += c;
@@ -186,7 +193,7 @@ class InitialReader {
     for (const Item& c : list.items)
       collect(diagnostics_, [&] {
         const std::vector<Syntax> sides = scope_.equation(c);
-        const Scope::Multipliers allowed(scope_);
+        const ForcesInFormulas::Allowed allowed(scope_.forces);
         const Value left = as_point(evaluate(sides[0], scope_), scope_, sides[0].span),
                     right = as_point(evaluate(sides[1], scope_), scope_, sides[1].span);
         const auto push = [&](Expr residual, const std::string& suffix) {

@@ -36,7 +36,7 @@ static void read_one(const Item& i, Scope& scope, Model& model) {
 }
 
 void read_monitors(const Item& section, Scope& scope, Model& model, Diagnostics& diagnostics) {
-  const Scope::Multipliers allowed(scope);
+  const ForcesInFormulas::Allowed allowed(scope.forces);
   for (const Item& i : section.items) collect(diagnostics, [&] { read_one(i, scope, model); }, i);
 }
 

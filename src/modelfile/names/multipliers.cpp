@@ -17,20 +17,21 @@ std::string multiplier_path(const Syntax& s) {
 Value Scope::multiplier(const std::string& path, Span use) {
   const std::vector<std::string>& names = model_.names.multipliers;
   // A constraint that holds in some modes may be among the names as well, but its force has no fixed index there.
-  if (contact_forces.declares(path))
-    if (const auto force = contact_forces.find(path, use))
+  if (forces.of_contacts.declares(path))
+    if (const auto force = forces.of_contacts.find(path, use))
       return graph().multiplier(kContactForces + static_cast<std::uint32_t>(*force), 0);
   if (const auto it = std::find(names.begin(), names.end(), path); it != names.end())
     return graph().multiplier(static_cast<std::uint32_t>(it - names.begin()), 0);
   for (const std::string& n : names)
     if (n.rfind(path + ".", 0) == 0) return InertialName{};  // a vector equation, of which a component must follow
-  if (const auto force = contact_forces.find(path, use))
+  if (const auto force = forces.of_contacts.find(path, use))
     return graph().multiplier(kContactForces + static_cast<std::uint32_t>(*force), 0);
+  if (forces.has_no_value(path)) throw silent_failure();
   const std::string near = did_you_mean(path, names);
   throw Failure(use, "there is no constraint '" + path + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
-std::optional<std::size_t> Scope::ContactForcesAsked::find(const std::string& path, Span use) {
+std::optional<std::size_t> ContactForcesAsked::find(const std::string& path, Span use) {
   std::string contact = path.substr(0, path.find('.'));
   while (!contact.empty() && !contacts_.count(contact) && contact.back() >= '0' && contact.back() <= '9')
     contact.pop_back();
@@ -53,7 +54,7 @@ bool is_reaction(const std::string& function) { return function == "reaction" ||
 
 // Evaluates reaction(B) or reaction_torque(B) from the accelerations, by Newton's law.
 Vector Scope::reaction_on(std::size_t body, const Syntax& call) {
-  if (multipliers_ == 0)
+  if (!forces.allowed())
     throw Failure(call.span,
                   "a reaction has no meaning here: it follows from the equations of which this formula is a part",
                   kWhereMultipliers);
@@ -63,19 +64,19 @@ Vector Scope::reaction_on(std::size_t body, const Syntax& call) {
 
 // True if any definition may contain a multiplier. The search in the texts spares most files the search below.
 bool Scope::speaks_of_multipliers() {
-  if (!with_multipliers_.any)
-    with_multipliers_.any = std::any_of(declarations_.begin(), declarations_.end(), [](const auto& named) {
+  if (!forces.definitions.any)
+    forces.definitions.any = std::any_of(declarations_.begin(), declarations_.end(), [](const auto& named) {
       const std::string& text = named.second.formula.text();
       return text.find("lambda") != std::string::npos || text.find("λ") != std::string::npos ||
              text.find("reaction") != std::string::npos;
     });
-  return *with_multipliers_.any;
+  return *forces.definitions.any;
 }
 
 // True if a definition contains a multiplier or a reaction, itself or through others.
 bool Scope::holds_multiplier(const std::string& name) {
   if (!speaks_of_multipliers()) return false;
-  if (const auto known = with_multipliers_.known.find(name); known != with_multipliers_.known.end())
+  if (const auto known = forces.definitions.known.find(name); known != forces.definitions.known.end())
     return known->second;
   std::set<std::string> seen = {name};
   std::vector<std::string> open = {name};
@@ -102,9 +103,9 @@ bool Scope::holds_multiplier(const std::string& name) {
     }
   }
   if (found)
-    with_multipliers_.known[name] = true;
+    forces.definitions.known[name] = true;
   else
-    for (const std::string& n : seen) with_multipliers_.known[n] = false;
+    for (const std::string& n : seen) forces.definitions.known[n] = false;
   return found;
 }
 

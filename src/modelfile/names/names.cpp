@@ -94,7 +94,7 @@ void Scope::refuse_unknown(const std::string& name, Span span) const {
   };
   if (const std::string habit = habit_of_name(name, varies); !habit.empty())
     throw Failure(span, "unknown name '" + name.substr(0, 60) + "'", habit);
-  if (contact_forces.declares(name))
+  if (forces.of_contacts.declares(name))
     throw Failure(span, "'" + name + "' is a contact, and its gap has no name in formulas",
                   "write the gap with points and coordinates, as P.z - R; lambda." + name +
                       " is the normal force, in monitors, outputs, rates and events");
@@ -334,8 +334,8 @@ void Scope::resolve_all() {
     const std::string& name = *named;
     Declaration& d = *declared;
     try {
-      std::optional<Multipliers> allowed;
-      if (d.role == Role::define) allowed.emplace(*this);
+      std::optional<ForcesInFormulas::Allowed> allowed;
+      if (d.role == Role::define) allowed.emplace(forces);
       if (d.arguments.empty())
         resolve(name, d, d.span);
       else if (!d.parsed)
@@ -359,7 +359,7 @@ Value Scope::name(const std::string& name, Span span) {
     return *here_;
   }
   if (name == "lambda") {
-    if (multipliers_ > 0) return InertialName{};  // has a meaning only with a member
+    if (forces.allowed()) return InertialName{};  // has a meaning only with a member
     throw Failure(span,
                   "a multiplier has no meaning here: it follows from the equations of which this formula is a part",
                   kWhereMultipliers);
@@ -368,7 +368,7 @@ Value Scope::name(const std::string& name, Span span) {
   if (it != declarations_.end()) {
     if (it->second.role == Role::table || !it->second.arguments.empty())
       throw Failure(span, "the function '" + name + "' is used without its arguments", name + "(…)");
-    if (multipliers_ == 0 && holds_multiplier(name))
+    if (!forces.allowed() && holds_multiplier(name))
       throw Failure(
           span,
           "'" + name +
@@ -418,7 +418,7 @@ Value Scope::member(const Value& object, const Syntax& s) {
     const Node* n = e ? &graph().node(e->id) : nullptr;
     return n && n->kind == Kind::multiplier && n->index >= kContactForces;
   };
-  if (multipliers_ > 0 && (is_inertial(object) || is_force()))
+  if (forces.allowed() && (is_inertial(object) || is_force()))
     if (const std::string path = multiplier_path(s); !path.empty()) return multiplier(path, s.span);
   throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'",
                 is_scalar(object) ? habit_of_member(s) : "");

@@ -9,6 +9,7 @@
 
 #include "expr/table.h"
 #include "model/model.h"
+#include "modelfile/names/forces_in_formulas.h"
 #include "modelfile/names/identity.h"
 #include "modelfile/text/collect.h"
 #include "modelfile/text/toml.h"
@@ -85,38 +86,7 @@ class Scope final : public Names {
 
   // In potentials the name of a varying mass denotes its frozen symbol.
   bool freeze_masses = false;
-  // While an object of this class exists, the constraints are known, so formulas may contain multipliers and reactions,
-  // and definitions that contain them.
-  class Multipliers {
-   public:
-    explicit Multipliers(Scope& scope) : scope_(scope) { ++scope_.multipliers_; }
-    ~Multipliers() { --scope_.multipliers_; }
-    Multipliers(const Multipliers&) = delete;
-    Multipliers& operator=(const Multipliers&) = delete;
-
-   private:
-    Scope& scope_;
-  };
-  // The forces of contacts, which formulas may contain before the contacts are read: multiplier kContactForces + k is
-  // force asked()[k]. After close() no formula may contain further forces, because their symbols have no values.
-  class ContactForcesAsked {
-   public:
-    using Asked = std::vector<std::pair<std::string, Span>>;  // "floor.t1", and the place of its first use
-    void declare(const std::string& contact) { contacts_.insert(contact); }
-    // True if "floor" of the path "floor.t1" is a contact.
-    bool declares(const std::string& path) const { return contacts_.count(path.substr(0, path.find('.'))) > 0; }
-    // Returns the force `path`; nullopt if there is no such contact. Corners of a box have the numbered names of their
-    // contact.
-    std::optional<std::size_t> find(const std::string& path, Span use);
-    const Asked& asked() const { return asked_; }
-    void close() { closed_ = true; }
-
-   private:
-    std::set<std::string> contacts_;
-    Asked asked_;
-    bool closed_ = false;
-  };
-  ContactForcesAsked contact_forces;
+  ForcesInFormulas forces;
   Vector gravity_at(const Vector& place, Span use);
   // Returns the derivatives of the field of gravity by the three coordinates of the place; empty if the field is
   // uniform.
@@ -192,12 +162,7 @@ class Scope final : public Names {
   std::vector<std::string> open_;                        // path of names being evaluated
   std::size_t depth_ = 0;                                // depth of nested definitions and parts of bodies
   std::vector<std::map<std::string, Value>> arguments_;  // arguments of functions being called
-  int multipliers_ = 0;                                  // number of callers that allow them
-  struct DefinitionsWithMultipliers {
-    std::optional<bool> any;            // some definition may hold a multiplier
-    std::map<std::string, bool> known;  // true for a definition that may hold one
-  } with_multipliers_;
-  std::size_t calls_ = 0;  // calls of given functions, over the whole file
+  std::size_t calls_ = 0;                                // calls of given functions, over the whole file
 };
 
 // Multipliers from this one on are forces of contacts; models have far fewer constraints.

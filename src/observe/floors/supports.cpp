@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "numeric/number.h"
+#include "setup/notes_on_multipliers.h"
 
 namespace anholon {
 
@@ -246,7 +247,7 @@ std::string without_size_of_pull(std::string note) {
 SupportWatch::SupportWatch(const Scenario& s, std::vector<Support> supports) : s_(s), start_(to_double(s.state.t)) {
   for (const Support& support : supports) {
     Load& load = loads_.emplace_back(support);
-    const std::vector<std::size_t> group = s.shared.group_of(support.constraint);
+    const std::vector<std::size_t> group = s.undetermined.group_of(support.constraint);
     const auto left_out = [&](std::size_t r) {
       return std::find(s.redundant.begin(), s.redundant.end(), r) != s.redundant.end();
     };
@@ -312,7 +313,7 @@ std::string SupportWatch::note(const Load& l) const {
 
 // The second step of the advice: the other constraints that hold the direction of this one must not hold it either.
 std::string SupportWatch::others_that_hold(std::size_t constraint) const {
-  std::vector<std::size_t> others = s_.shared.group_of(constraint);
+  std::vector<std::size_t> others = s_.undetermined.group_of(constraint);
   std::erase(others, constraint);
   if (others.empty()) return {};
   std::vector<std::string> names;

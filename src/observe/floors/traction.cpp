@@ -6,6 +6,7 @@
 #include "expr/diff.h"
 #include "expr/normal.h"
 #include "numeric/number.h"
+#include "setup/notes_on_multipliers.h"
 #include "tape/bind.h"
 
 namespace anholon {

@@ -26,8 +26,8 @@ std::vector<N> LeastMultipliers<N>::at(const Expansion<N>& point) {
 }
 
 template <Number N>
-SharedForces LeastMultipliers<N>::shared() const {
-  SharedForces found;
+UndeterminedMultipliers LeastMultipliers<N>::undetermined() const {
+  UndeterminedMultipliers found;
   if (rows_.rows == 0) return found;
   Matrix<double> phi(rows_.rows, rows_.cols);
   for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = to_double(rows_.data[i]);

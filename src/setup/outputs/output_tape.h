@@ -129,7 +129,7 @@ class LeastMultipliers {
   // Returns the multipliers of all constraints of the model at a point.
   std::vector<N> at(const Expansion<N>& point);
   // Returns the dependencies of the constraints at the last point, and those that are left out there; none before.
-  SharedForces shared() const;
+  UndeterminedMultipliers undetermined() const;
   void set_parameters(const std::vector<N>& parameters) { phi_.set_parameters(parameters); }
 
  private:

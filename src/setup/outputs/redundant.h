@@ -24,7 +24,7 @@ class Redundant {
   // part of the state, else zeros for the constraints that are left out (theory: dae-view).
   std::vector<W> multipliers(const Expansion<W>& point);
   // Returns the dependencies at the last point of which the least multipliers were computed; none before.
-  SharedForces shared() const { return least_ ? least_->shared() : SharedForces(); }
+  UndeterminedMultipliers undetermined() const { return least_ ? least_->undetermined() : UndeterminedMultipliers(); }
 
   void set_parameters(const std::vector<W>& parameters) {
     if (outputs_) outputs_->set_parameters(parameters), least_->set_parameters(parameters);
