@@ -11,12 +11,12 @@
 #include "contact/law/consistent_modes.h"
 #include "contact/law/impact.h"
 #include "contact/law/impact_states.h"
-#include "contact/law/shared_forces.h"
 #include "contact/mode_segments.h"
 #include "contact/refused_options.h"
 #include "contact/slip_start.h"
 #include "contact/surface/contact_exponents.h"
 #include "contact/switched_motion.h"
+#include "contact/unpressed.h"
 #include "integrate/step_control.h"
 #include "modelfile/check/coefficients.h"
 #include "numeric/told_time.h"
@@ -25,30 +25,6 @@
 namespace anholon {
 
 namespace {
-
-// Leaves out the constraints that may keep a gap at this place or time alone: their rows change, or their rates depend
-// on more than the velocities, as those of a drive do.
-ContactProblem with_lasting_rows(ContactProblem p, const Workspace& s) {
-  const Graph& g = s.mechanics->graph();
-  // True if a formula contains no more than parameters, and coordinates or their derivatives of this order.
-  const auto only = [&](Expr e, std::optional<int> order) {
-    const std::vector<NodeId> ids = symbols({&e, 1});
-    return std::all_of(ids.begin(), ids.end(), [&](NodeId id) {
-      const Node& n = g.node(id);
-      return n.kind == Kind::parameter || (n.kind == Kind::jet && n.order == order);
-    });
-  };
-  std::vector<std::vector<long double>> lasting;
-  for (std::size_t r = 0; r < p.Phi.size(); ++r) {
-    const std::size_t of = s.independent[r];
-    const Column& row = s.mechanics->Phi[of];
-    const auto constant = [&](Expr e) { return only(e, std::nullopt); };
-    if (std::all_of(row.begin(), row.end(), constant) && only(s.mechanics->phi[of], s.mechanics->order[of]))
-      lasting.push_back(p.Phi[r]);
-  }
-  p.Phi = std::move(lasting);
-  return p;
-}
 
 class HybridMotion {
  public:
@@ -127,32 +103,8 @@ class HybridMotion {
     const std::vector<ContactSolution> list = consistent_modes(bodies_.with_touching());
     if (list.size() != 1) return;
     bodies_.modes = list[0].modes;
-    note_rests(bodies_.with_touching(), list[0]);
+    note_rests(bodies_, bodies_.with_touching(), list[0]);
     name_reversals(bodies_.modes);
-  }
-
-  // A contact that is not pressed may slip or stick: it sticks if nothing moves it.
-  void note_rests(const ContactProblem& p, const ContactSolution& now) {
-    constexpr long double kNothing = 1e-12L;
-    const long double least = kNothing * size_of_forces(p, now);
-    const auto free = of_modes(p, ContactModes(bodies_.contacts.size()));
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
-      const bool moves = p.contacts[c].moves || bodies_.excluded[c].stick ||
-                         (free && bodies_.dynamics.slip_acceleration(c, now.x) >
-                                      kNothing * bodies_.dynamics.slip_acceleration(c, free->x));
-      bodies_.modes[c].rests = free && bodies_.contacts[c].rough() && bodies_.modes[c].touch == Touch::slips &&
-                               now.normal[c] <= least && !moves;
-    }
-  }
-
-  // A gap that constraints and the other contacts keep closed at rest neither opens nor closes but by round-off.
-  void note_still(const ContactProblem& p) {
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
-      const std::vector<long double>& n = p.contacts[c].normal;
-      bool rests = bodies_.modes[c].touch == Touch::open && bodies_.near.closed(c) && !bodies_.contacts[c].under;
-      for (std::size_t a = 0; rests && a < n.size(); ++a) rests = n[a] == 0 || bodies_.at.qd[a] == 0;
-      bodies_.modes[c].still = rests && others_keep_gap(with_lasting_rows(p, s_), bodies_.modes, c);
-    }
   }
 
   // A slip that passes zero and goes on has reversed.
@@ -189,7 +141,7 @@ class HybridMotion {
     ContactProblem p;
     std::vector<ContactSolution> list = modes_now(p);
     if (list.size() != 1) return faults_.undecided(list.size());
-    if (!struck && !over_border) leave_open(p, list);
+    if (!struck && !over_border) leave_open(bodies_, s_, p, list);
     slips_->tell_who_slips_too(list[0].modes);
     bodies_.modes = list[0].modes;
     if (over_border)
@@ -197,7 +149,7 @@ class HybridMotion {
     else
       tell_openings(before, struck ? 0 : slips_->held_for());
     if (Outcome o = faults_.lies_flat(false); !o.ok()) return o;
-    note_rests(p, list[0]);
+    note_rests(bodies_, p, list[0]);
     name_reversals(bodies_.modes);
     const auto open = of_modes(p, ContactModes(bodies_.contacts.size()));
     if (open) {
@@ -220,7 +172,7 @@ class HybridMotion {
     bodies_.stop(bodies_.modes);
     bodies_.drop_left_over();
     bodies_.bound_rest();
-    note_still(p);
+    note_still(bodies_, s_, p);
     // The check is made again, because coordinates that are round-off were set to zero.
     return faults_.not_regular();
   }
@@ -238,30 +190,6 @@ class HybridMotion {
     if (list.size() == 1 || !any) return list;
     bodies_.earlier.assign(bodies_.contacts.size(), {});
     return find();
-  }
-
-  // Leaves contacts open that nothing presses now, and that were open, or whose gap the constraints keep closed here
-  // alone: a pendulum at its lowest point touches the floor and carries nothing.
-  void leave_open(ContactProblem& p, std::vector<ContactSolution>& list) const {
-    const long double least = kRest * size_of_forces(p, list[0]);
-    ContactProblem open = p;
-    bool any = false;
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
-      if (list[0].modes[c].touch == Touch::open || p.contacts[c].under || list[0].normal[c] > least) continue;
-      const bool was_open =
-          c < bodies_.modes.size() && bodies_.modes[c].touch == Touch::open && !bodies_.near.has_reached(c);
-      if (!was_open && !kept_here_alone(p, list[0].modes, c)) continue;
-      open.contacts[c].may_touch = false, any = true;
-    }
-    if (!any) return;
-    std::vector<ContactSolution> found = consistent_modes(open);
-    if (found.size() == 1) p = std::move(open), list = std::move(found);
-  }
-
-  // True if others keep the gap of a closed contact, and would not without the constraints whose rows change.
-  bool kept_here_alone(const ContactProblem& p, ContactModes modes, std::size_t contact) const {
-    modes[contact].touch = Touch::open;
-    return others_keep_gap(p, modes, contact) && !others_keep_gap(with_lasting_rows(p, s_), modes, contact);
   }
 
   // Computes impacts where a closed gap shrinks: at a border of a surface, first those on the side from which the

@@ -127,9 +127,7 @@ Mechanics mechanics(const Model& model) {
 
 Column forces(const Mechanics& m) { return m.Q + m.QR + m.QD + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma; }
 
-// Returns the partial derivative by explicit time, with coordinates, velocities and masses held; unknown given
-// functions f(t), states and inputs count as explicit time.
-static Expr by_time(Expr e) {
+Expr by_time(Expr e) {
   Graph& g = *e.graph;
   Expr rate = partial(e, g.time());
   for (NodeId id : symbols({&e, 1})) {
@@ -171,7 +169,9 @@ std::vector<Column> mass_matrix(const Mechanics& m) {
 Column newton_left_side(const Mechanics& m) {
   Pull pull;
   for (const WeightedPoint& p : m.points) pull.add(p.place, p.weight * total_derivative(total_derivative(p.place)));
-  return put_masses(*m.model, pull.back(m.q));
+  Column left = put_masses(*m.model, pull.back(m.q));
+  for (Expr& e : left) e = put_state_rates(*m.model, e, 2);
+  return left;
 }
 
 static void for_each_expression(WeightedPoint& p, const ExprVisitor& f) {

@@ -52,6 +52,10 @@ void for_each_expression(Mechanics& m, const ExprVisitor& f);
 // Returns Q + QR + QD + Qomega - d(V_O + V_omega)/dq + Gamma: the given and the inertial forces.
 Column forces(const Mechanics& m);
 
+// Returns the partial derivative by explicit time, with coordinates, velocities and masses held; unknown given
+// functions f(t), states and inputs count as explicit time.
+Expr by_time(Expr e);
+
 // Energy and its rate, with masses substituted (theory: certificate).
 struct Power {
   Expr h;           // q' dT/dq' - T
@@ -64,7 +68,8 @@ Power power(const Mechanics& m);
 // Returns d^2 T / dq' dq' row by row, masses substituted.
 std::vector<Column> mass_matrix(const Mechanics& m);
 
-// Returns Newton's left side sum m a . drho/dq, computed from the points themselves, independently of T and S.
+// Returns Newton's left side sum m a . drho/dq, computed from the points themselves, independently of T and S. Second
+// derivatives of the model's states are those of their rates.
 Column newton_left_side(const Mechanics& m);
 
 }  // namespace anholon

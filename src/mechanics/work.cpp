@@ -23,12 +23,8 @@ Expr power_factor(const Mechanics& m, std::size_t r) {
   const Expr phi = put_masses(model, m.phi[r]);
   if (m.order[r] == 0) {
     // sum Phi q' is the total derivative without its explicit part.
-    const Expr along = total_derivative(phi);
-    const Expr by_time = substitute({&along, 1}, [&](NodeId id) {
-      const Node& n = g.node(id);
-      return n.kind == Kind::jet && n.order == 1 ? g.zero() : Expr{};
-    })[0];
-    return proved_zero(by_time) ? g.zero() : arranged(-by_time, model.names);
+    const Expr rate = by_time(phi);
+    return proved_zero(rate) ? g.zero() : arranged(-rate, model.names);
   }
   if (m.order[r] == 1 &&
       homogeneous_degree(m.phi[r], [](const Node& n) { return n.kind == Kind::jet && n.order == 1; }))

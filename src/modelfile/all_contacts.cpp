@@ -1,6 +1,7 @@
 #include "modelfile/all_contacts.h"
 
 #include "modelfile/check/states_in_contacts.h"
+#include "modelfile/contact_forces.h"
 #include "modelfile/mechanical/contact_names.h"
 
 namespace anholon {

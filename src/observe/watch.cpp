@@ -35,7 +35,7 @@ static Expr balance_power(Workspace& s, const Power& p) {
     if (s.model->constraints[r].by || (m.order[r] == 1 && s.classes[r].homogeneous)) continue;
     Expr rate = g.zero();
     if (m.order[r] == 0)
-      rate = -partial(m.phi[r], g.time());
+      rate = -by_time(m.phi[r]);
     else
       for (std::size_t a = 0; a < m.q.size(); ++a) rate += m.Phi[r][a] * m.qd[a];
     total += m.lambda[r] * put_masses(*s.model, rate);

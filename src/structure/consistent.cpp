@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "structure/state_solver.h"
+#include "tape/bind.h"
 
 namespace anholon {
 
@@ -24,6 +25,7 @@ Outcome StateSolver<N>::positions_and_velocities() {
   if (Outcome o = solve(plan.velocities); !o.ok()) {
     if (!before || !move_positions(plan, *before)) return o;
   }
+  if (plan.state_rates) put_rates(*plan.state_rates);
   say_least_change();
   say_replaced();
   return {};
@@ -54,6 +56,18 @@ void StateSolver<N>::states() {
   state_.state_rates.assign(n, N(0));
   state_.states_origin.assign(n, Origin::given);
   state_.state_rates_origin.assign(n, Origin::derived);
+}
+
+// Sets the rates of the model's states at this state.
+template <Number N>
+void StateSolver<N>::put_rates(const Tape& rates) {
+  Machine<N> machine(rates, 0, p_.parameters);
+  bind(machine, m_.graph(), [&](const Node& n, NodeId) {
+    const N* known = state_.value(n);
+    return n.kind == Kind::time ? state_.t : known ? *known : N(0);
+  });
+  machine.evaluate();
+  for (std::size_t i = 0; i < state_.state_rates.size(); ++i) state_.state_rates[i] = machine.value(i);
 }
 
 // Sets guesses, then values of the file, then the overrides; the model's states start with the values of the file.

@@ -38,7 +38,23 @@ StartPlan::Stages planned(const Mechanics& m, const StageEquations& equations, c
   return equations.empty() ? nullptr : std::make_shared<StagePlan>(m, equations, unknowns, metric, mass);
 }
 
-StartPlan::StartPlan(const Mechanics& m, const std::vector<Column>* mass) : values(initial_values(*m.model)) {
+static std::optional<Tape> rates_of_states(const Model& model) {
+  const auto holds_state = [&](const Constraint& c) {
+    const std::vector<NodeId> ids = symbols({&c.phi, 1});
+    return c.order == 0 &&
+           std::any_of(ids.begin(), ids.end(), [&](NodeId id) { return model.graph->node(id).kind == Kind::state; });
+  };
+  if (std::none_of(model.constraints.begin(), model.constraints.end(), holds_state)) return std::nullopt;
+  Column es;
+  for (const StateVariable& z : model.states) {
+    const Expr rate = put_masses(model, z.rate);
+    es.push_back(holds_higher(rate) ? model.graph->zero() : rate);
+  }
+  return compile(es);
+}
+
+StartPlan::StartPlan(const Mechanics& m, const std::vector<Column>* mass)
+    : values(initial_values(*m.model)), state_rates(rates_of_states(*m.model)) {
   const Model& model = *m.model;
   std::vector<StageEquation> of_positions, of_velocities;
   for (const Constraint& c : model.constraints) {
@@ -77,8 +93,8 @@ StartPlan StartPlan::copy() const {
 }
 
 void for_each_expression(StartPlan& p, const ExprVisitor& f) {
-  auto& [values, positions, velocities, both] = p;
-  static_cast<void>(values);  // without handles
+  auto& [values, positions, velocities, both, state_rates] = p;
+  static_cast<void>(values), static_cast<void>(state_rates);  // without handles
   for (StartPlan::Stages* stages : {&positions, &velocities, &both})
     if (*stages) for_each_expression(const_cast<StagePlan&>(**stages), f);
 }

@@ -37,6 +37,7 @@ class StateSolver {
 
   // Positions and velocities (consistent.cpp).
   void states();
+  void put_rates(const Tape& rates);
   void start_values(const std::function<bool(const Node&)>& wanted);
   Outcome solve(const StartPlan::Stages& stages);
   Outcome solve(const StageEquations& equations, const Column& unknowns, unsigned metric);

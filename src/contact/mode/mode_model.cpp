@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "modelfile/contact_forces.h"
+
 namespace anholon {
 
 void put_forces(const ContactForces& of, const std::vector<Expr>& normals,

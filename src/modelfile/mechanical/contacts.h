@@ -4,7 +4,6 @@
 // Motions make a model for each mode of the contacts (contact/mode/mode_model.h).
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -32,10 +31,6 @@ struct ContactForces {
   std::vector<Force> forces;
   std::vector<Formula> formulas;
 };
-
-// Substitutes the forces of contacts in a formula. If a quotient by a force that is zero has no value, the formula has
-// none either: it is not a number.
-Expr with_contact_forces(Graph& g, Expr formula, const std::function<Expr(const Node&)>& force);
 
 // The data of a [[constraint]] with active = "…", which has no laws of a contact: it holds in both directions while a
 // formula of modes is positive.
@@ -99,9 +94,5 @@ bool is_switched(const Item& constraint);
 // (NAME.rolling) and drilling (NAME.drilling), then its one-sided constraints, whose gaps are left - right. Contacts
 // with friction or restitution must have the same law of impacts. Errors go to the diagnostics.
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
-
-// Finds the forces that monitors, outputs, rates of states and events contain, and replaces them by zeros in the model.
-// Errors, also those of conditions, rates and values that contain a force, go to the diagnostics.
-void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics);
 
 }  // namespace anholon
