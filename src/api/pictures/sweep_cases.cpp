@@ -138,7 +138,7 @@ bool SweepCases::are_in(const std::string& path) {
 
 SweepCases::SweepCases(const std::string& path) {
   if (SweepStore::is_there(path)) {
-    store_ = SweepStore::open(path);
+    store_ = opened_to_read(path);
     names_ = store_->request().columns;
     read_model();
   } else {

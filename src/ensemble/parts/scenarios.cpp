@@ -28,6 +28,12 @@ void has_other_columns(const std::string& scenario, const std::string& first, co
 void must_have_columns_of(const SweepTable& first, const std::string& first_scenario, const SweepTable& table,
                           const std::string& scenario, const std::string& hint) {
   if (names_of(table) != names_of(first)) has_other_columns(scenario, first_scenario, hint);
+  const auto units = [](const SweepTable& of) { return of.units().empty() ? std::string("in SI units") : of.units(); };
+  if (table.units() != first.units())
+    throw Failure({},
+                  "the units of what varies differ: " + units(first) + " in the case '" + first_scenario + "', and " +
+                      units(table) + " in the case '" + scenario + "'",
+                  "one unit of a parameter in all cases, or a sweep of each case");
 }
 
 }  // namespace anholon
