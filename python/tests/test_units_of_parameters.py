@@ -81,6 +81,18 @@ def test_a_folder_in_si_units_is_refused(model: an.Model, tmp_path: pathlib.Path
             attempt()
 
 
+def test_scenarios_have_one_unit_of_what_varies(model: an.Model, tmp_path: pathlib.Path) -> None:
+    heavy = model.text + '[case.heavy]\nparameters.m = {value = 3, unit = "kg"}\n[case.light]\nparameters.m = {value = 3, unit = "g"}\n'
+    for out in ({}, {"out": tmp_path / "falls"}):
+        with pytest.raises(an.ModelError, match="the units of what varies differ: in SI units in the case 'heavy', and m in g in the case 'light'"):
+            an.loads(heavy).sweep({"case": ["heavy", "light"], "m": [1, 2]}, to=0.1, **out)
+    tons = an.loads(model.text + '[case.heavy]\nparameters.m = {value = 3, unit = "t"}\n')
+    swept = tons.sweep({"case": ["heavy"], "m": [1, 2]}, to=0.1)
+    assert swept.units["m"] == "t" and swept.varied["m"].tolist() == [1, 2]
+    folder = tons.sweep({"case": ["heavy"], "m": [1, 2]}, to=0.1, out=tmp_path / "tons")
+    assert folder.units["m"] == "t" and folder["m"].tolist() == [1, 2] and folder["x"].tolist() == swept["x"].tolist()
+
+
 def test_linear_models_have_the_given_values(model: an.Model) -> None:
     values = model.stability("m", [250, "0.5 kg"], about="equilibrium")
     assert values.values.tolist() == [250, 500]

@@ -68,13 +68,6 @@ const inner::Parameter* parameter_of(const inner::Model& model, const std::strin
 
 AskedWord set_word(const std::string& name, const std::string& number) { return {"set", name + "=" + number}; }
 
-// Reads the model of the sweep.
-Result<Model> model_of(const SweepStore& store) {
-  ReadOptions reading;
-  reading.mode = words_of(store.asked("mode"));
-  return opened(model_asked(store.request()), reading);
-}
-
 // Splits a list at its commas; a name that holds a comma is quoted.
 std::vector<std::string> listed(const std::string& text) {
   return text.empty() ? std::vector<std::string>() : inner::csv_cells(text);
@@ -214,17 +207,22 @@ bool is_motion_option(const std::string& name) {
   return std::any_of(rows.begin(), rows.end(), [&](const inner::MotionOption& o) { return o.name == name; });
 }
 
+// Reads the model of the sweep with its scenarios, of those that vary the first one.
+Result<Model> model_of(const SweepStore& store) {
+  ReadOptions reading;
+  reading.mode = words_of(store.asked("mode"));
+  reading.cases = scenarios(store);
+  if (const std::vector<std::string> all = varied_scenarios(store); !all.empty()) reading.cases.push_back(all.front());
+  return opened(model_asked(store.request()), reading);
+}
+
 // Returns the units in which columns of varied parameters would be now: "m in g, a in deg"; empty if the model cannot be
 // read, or if all of them are in SI units.
 std::string units_now(const SweepStore& store) {
   const auto& asked = store.request().asked;
   const auto tells_units = [](const auto& text) { return text.second.find("unit") != std::string::npos; };
   if (std::none_of(asked.begin(), asked.end(), tells_units)) return {};
-  ReadOptions reading;
-  reading.mode = words_of(store.asked("mode"));
-  reading.cases = scenarios(store);
-  if (const std::vector<std::string> all = varied_scenarios(store); !all.empty()) reading.cases.push_back(all.front());
-  const Result<Model> model = opened(model_asked(store.request()), reading);
+  const Result<Model> model = model_of(store);
   if (!model) return {};
   std::string units;
   for (const std::string& column : store.request().columns)

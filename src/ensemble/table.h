@@ -11,6 +11,9 @@
 
 namespace anholon {
 
+// Returns the units of the varied parameters that have one other than the SI unit: "m in g, a in deg".
+std::string units_of(const std::vector<Varied>& varied);
+
 class SweepTable {
  public:
   SweepTable(const Model& model, const EnsembleOptions& options);
@@ -23,7 +26,7 @@ class SweepTable {
   // times, and what varies) come before them if they are not among them. The reductions, which were requested by name,
   // come after them.
   void choose(const std::vector<std::size_t>& columns);
-  // The units of the columns of varied parameters that have one other than the SI unit: "m in g, a in deg".
+  // The units of what varies.
   const std::string& units() const { return units_; }
   // Throws Failure without a place if two of the columns have one name, as when a monitor is called "outcome": readers
   // of a file could not distinguish them.
