@@ -468,6 +468,20 @@ initial = {th = "10 deg"}
     assert values.values.tolist() == [25, 50]
 
 
+def test_workers_keep_the_units_of_the_file(client: Any, tmp_path: pathlib.Path) -> None:
+    model = an.loads("""coordinates = ["th"]
+parameters = {l = {value = 50, unit = "cm"}, a = {value = 10, unit = "deg"}}
+particle = [{name = "bob", mass = "2 kg", position = "l*sin(th)*ex - l*cos(th)*ez"}]
+gravity.field = "-(9.81 m/s^2)*ez"
+initial = {th = "a"}
+""")
+    vary: dict[str, Any] = {"l": [25, "1/3", "2 m"], "a": [10, 30]}
+    whole = model.sweep(vary, to=0.3)
+    swept = model.sweep(vary, to=0.3, out=tmp_path / "lengths", chunk=2, on=client)
+    assert swept.complete and swept["l"].tolist() == whole.varied["l"].tolist() == [25, 25, 1 / 3, 1 / 3, 200, 200]
+    assert swept["a"].tolist() == [10, 30] * 3 and swept["th"].tolist() == whole["th"].tolist()
+
+
 def test_a_motion_that_an_event_ends_shows_the_state_before_it(tmp_path: pathlib.Path) -> None:
     model = an.loads(
         """
