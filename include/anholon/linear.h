@@ -60,7 +60,7 @@ ANHOLON_API Result<LinearModel> linearize(const System& system);
 
 // A value of the parameter at which an eigenvalue crosses the imaginary axis.
 struct Crossing {
-  double value = 0;                        // of the parameter
+  double value = 0;                        // of the parameter, in the unit of Stability::values
   double frequency = 0;                    // of the eigenvalue there, rad/s; 0: it is real
   int eigenvalues = 1;                     // how many cross: 2 for a pair
   bool destabilizes = false;               // for growing values the eigenvalue moves to the right
@@ -72,7 +72,8 @@ struct Crossing {
 
 struct Stability {
   std::string parameter;
-  std::vector<double> values;       // of the parameter
+  // Of the parameter, in the unit that the model declares for it, else in SI units.
+  std::vector<double> values;
   std::vector<LinearModel> models;  // by value; empty where `outcomes` tells why there is none
   std::vector<Outcome> outcomes;
   // curves[i][k] is the eigenvalue at the value k that continues the curve i; NaN where there is none.

@@ -25,8 +25,10 @@ struct Coordinate {
 
 struct Parameter {
   std::string name;
-  double value = 0;  // SI; NaN if the file gives the parameter no value
-  std::string unit;
+  // In the unit that the file declares for the parameter, as in {value = 500, unit = "g"}, else SI; so is a bare number
+  // in ReadOptions::set and Vary. NaN if the file gives the parameter no value.
+  double value = 0;
+  std::string unit;  // of the value; empty where the file names none
 };
 
 struct Constraint {

@@ -68,8 +68,8 @@ class ANHOLON_API Sweep {
   std::span<const double> rows(const std::string& name) const;
   // The names that vary: those in SweepOptions::vary, without scenarios, then those of the table.
   const std::vector<std::string>& varied_names() const;
-  // The values that one of these names takes, one for each case. Empty if the name is not varied, or if it
-  // stands for scenarios.
+  // The values that one of these names takes, one for each case: those of a parameter in the unit that the model
+  // declares for it, as they are given, else in SI units. Empty if the name is not varied, or if it stands for scenarios.
   std::span<const double> varied(const std::string& name) const;
   // The scenarios that vary, in their order; empty if none do.
   const std::vector<std::string>& scenarios() const;

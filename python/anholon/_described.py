@@ -38,7 +38,8 @@ class Described:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """The values of the parameters by name, in SI units."""
+        """The values of the parameters by name, each in the unit that the file declares for it, as in ``{value = 50, unit = "cm"}``, else
+        in SI units: as :meth:`with_` takes them. ``p`` and ``p0`` of :meth:`dynamics` are in SI units."""
         return ByName({p.name: p.value for p in self._core.parameters})
 
     @property

@@ -383,7 +383,7 @@ class Stability:
 
     @property
     def values(self) -> Array:
-        """The values of the parameter, shape (values,), in SI units."""
+        """The values of the parameter, shape (values,), in the unit that the model declares for it, else in SI units."""
         import numpy as np
 
         return np.array(self._core.values)

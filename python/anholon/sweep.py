@@ -37,7 +37,8 @@ def is_law(of: object) -> bool:
 
 
 def normal(mean: Number, deviation: Number) -> Law:
-    """Returns the law of normally distributed values with a mean and a standard deviation in SI units.
+    """Returns the law of normally distributed values with a mean and a standard deviation. Those of a parameter
+    are in the unit that the file declares for it, else in SI units.
 
     Example:
         >>> import anholon as an
@@ -49,7 +50,8 @@ def normal(mean: Number, deviation: Number) -> Law:
 
 
 def uniform(low: Number, high: Number) -> Law:
-    """Returns the law of evenly distributed values between two numbers in SI units.
+    """Returns the law of evenly distributed values between two numbers. Those of a parameter are in the unit that the file
+    declares for it, else in SI units.
 
     Example:
         >>> import anholon as an
@@ -61,8 +63,8 @@ def uniform(low: Number, high: Number) -> Law:
 
 
 def grid(low: Number, high: Number, count: int) -> Law:
-    """Returns the law of evenly spaced values, both ends included, in SI units. A value is computed with its case, so that 10^9
-    values take no memory.
+    """Returns the law of evenly spaced values, both ends included. Those of a parameter are in the unit that the file declares for it,
+    else in SI units. A value is computed with its case, so that 10^9 values take no memory.
 
     Example:
         >>> import anholon as an

@@ -127,7 +127,8 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return dict(self._core.units())
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
-        """Returns a column, shape (cases,) or with ``at`` (cases * times,), in SI units. Without ``at``, entry k belongs to case k.
+        """Returns a column, shape (cases,) or with ``at`` (cases * times,), in SI units; a varied parameter is in the unit that
+        the file declares for it. Without ``at``, entry k belongs to case k.
 
         If the part of a case is missing, a number is NaN and a word is empty; whole numbers become doubles then.
 

@@ -167,7 +167,7 @@ void bind_linear(nb::module_& m) {
             &LinearModel::eigenvalue_texts, &LinearModel::multiplicities, &LinearModel::modes);
   nb::class_<Crossing> crossing(m, "Crossing",
                                 "A value of a parameter at which an eigenvalue crosses the imaginary axis.");
-  crossing.def_ro("value", &Crossing::value, "Of the parameter, SI.")
+  crossing.def_ro("value", &Crossing::value, "Of the parameter, in the unit that the model declares for it, else SI.")
       .def_ro("frequency", &Crossing::frequency, "Of the eigenvalue there, rad/s; 0: it is real.")
       .def_ro("eigenvalues", &Crossing::eigenvalues, "How many cross: 2 for a pair.")
       .def_ro("destabilizes", &Crossing::destabilizes, "For growing values the eigenvalue moves to the right.")

@@ -11,8 +11,9 @@ void bind_model(nb::module_& m) {
       .def("__repr__", [](const Coordinate& c) { return c.unit.empty() ? c.name : c.name + " [" + c.unit + "]"; });
   nb::class_<Parameter>(m, "Parameter", "A parameter of a model.")
       .def_ro("name", &Parameter::name)
-      .def_ro("value", &Parameter::value, "SI; NaN if the file gives the parameter no value.")
-      .def_ro("unit", &Parameter::unit)
+      .def_ro("value", &Parameter::value,
+              "In the unit that the file declares for it, else SI; NaN if the file gives the parameter no value.")
+      .def_ro("unit", &Parameter::unit, "Of the value; empty where the file names none.")
       .def("__repr__", [](const Parameter& p) {
         return nb::cast<std::string>(
             nb::str("{} = {!r}{}").format(p.name, p.value, p.unit.empty() ? "" : " " + p.unit));

@@ -450,22 +450,36 @@ def test_a_process_that_fills_a_folder_ends_without_a_word(tmp_path: pathlib.Pat
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
-def test_the_run_of_a_case_has_the_value_in_si_units(tmp_path: pathlib.Path) -> None:
+def test_the_run_of_a_case_has_the_value_in_the_unit_of_the_file(tmp_path: pathlib.Path) -> None:
     model = an.loads("""coordinates = ["th"]
 parameters = {l = {value = 50, unit = "cm"}}
 particle = [{name = "bob", mass = "2 kg", position = "l*sin(th)*ex - l*cos(th)*ez"}]
 gravity.field = "-(9.81 m/s^2)*ez"
 initial = {th = "10 deg"}
 """)
-    assert model.with_(l=25).parameters["l"] == 0.25
+    assert model.with_(l=25).parameters["l"] == 25
     folder = model.sweep({"l": [25, "1/3*(1 m)", "0.5 m"]}, to=0.1, out=tmp_path / "lengths")
-    assert folder["l"].tolist() == [0.25, 1 / 3, 0.5]
-    assert model.sweep({"l": an.grid(25, 50, 2)}, to=0.1).varied["l"].tolist() == [0.25, 0.5]
+    assert folder["l"].tolist() == [25, 100 / 3, 50] and folder.units["l"] == "cm"
+    assert model.sweep({"l": an.grid(25, 50, 2)}, to=0.1).varied["l"].tolist() == [25, 50]
     for opened in (folder, an.open_sweep(folder.path)):
         for case in range(3):
             assert opened.run(case)["th"][-1] == pytest.approx(opened["th"][case], rel=1e-13)
     values = model.stability("l", 25, 50, 2, about="equilibrium")
-    assert values.values.tolist() == [0.25, 0.5]
+    assert values.values.tolist() == [25, 50]
+
+
+def test_workers_keep_the_units_of_the_file(client: Any, tmp_path: pathlib.Path) -> None:
+    model = an.loads("""coordinates = ["th"]
+parameters = {l = {value = 50, unit = "cm"}, a = {value = 10, unit = "deg"}}
+particle = [{name = "bob", mass = "2 kg", position = "l*sin(th)*ex - l*cos(th)*ez"}]
+gravity.field = "-(9.81 m/s^2)*ez"
+initial = {th = "a"}
+""")
+    vary: dict[str, Any] = {"l": [25, "1/3", "2 m"], "a": [10, 30]}
+    whole = model.sweep(vary, to=0.3)
+    swept = model.sweep(vary, to=0.3, out=tmp_path / "lengths", chunk=2, on=client)
+    assert swept.complete and swept["l"].tolist() == whole.varied["l"].tolist() == [25, 25, 1 / 3, 1 / 3, 200, 200]
+    assert swept["a"].tolist() == [10, 30] * 3 and swept["th"].tolist() == whole["th"].tolist()
 
 
 def test_a_motion_that_an_event_ends_shows_the_state_before_it(tmp_path: pathlib.Path) -> None:

@@ -112,12 +112,13 @@ Result<Stability> stability(const Model& model, const std::string& parameter, co
   return guarded(model.data().source, [&]() -> Result<Stability> {
     inner::LinearRequest request = request_of(model, options);
     inner::ParameterRange range{inner::parameter_of(*model.data().model, parameter), {}};
+    range.unit = inner::declared_unit(model.data().model->parameters[range.parameter]);
     inner::GivenQuantity of = inner::GivenQuantity::of_parameter(*model.data().model, range.parameter);
     for (const Number& v : values) {
       const inner::Constant value = constant(v, parameter);
       if (const auto wrong = of.misfit(value))
         throw inner::Failure({}, parameter + ": " + wrong->message, wrong->hint("a number "));
-      range.values.push_back(of.in_si(value));
+      range.values.push_back(of.number(value));
     }
     if (values.empty()) return mistake("no value of '" + parameter + "' is given");
     request.range = std::move(range);

@@ -79,14 +79,14 @@ std::vector<Parameter> Model::parameters() const {
   const inner::Model& m = *data_->model;
   std::vector<double> values;
   try {
-    values = inner::parameter_values<double>(m);
+    values = inner::parameters_as_given(m);
   } catch (const inner::Failure&) {
     // A parameter has no value: the model serves for equations alone.
     values.assign(m.parameters.size(), std::numeric_limits<double>::quiet_NaN());
   }
   std::vector<Parameter> list;
   for (std::size_t i = 0; i < m.parameters.size(); ++i)
-    list.push_back({m.parameters[i].name, values[i], i < m.parameter_units.size() ? m.parameter_units[i] : ""});
+    list.push_back({m.parameters[i].name, values[i], inner::unit_of_parameter(m, i)});
   return list;
 }
 

@@ -139,10 +139,13 @@ Result<Sweep> computed(const PreparedSweep& p) {
     columns.emplace_back(piece, p.asked.columns);
     if (columns.back().names != columns.front().names)
       inner::has_other_columns(piece.word, p.pieces.front().word, "choose columns that both have");
+    inner::must_have_units_of(inner::units_of(p.pieces.front().options.varied), p.pieces.front().word,
+                              inner::units_of(piece.options.varied), piece.word);
   }
   const PreparedPiece& first = p.pieces.front();
   data->columns = columns.front().names, data->of_state = columns.front().of_state;
-  data->model = p.model, data->form = first.scenario->system.form->name, data->units = units_of(*p.model, *data);
+  data->model = p.model, data->form = first.scenario->system.form->name,
+  data->units = units_of(*first.system.data().model, *data);
   data->table = table_of(first, columns.front(), !p.asked.columns.empty());
   data->places = columns.front().places;
   data->all_of_state = columns.front().in_state, data->all_reductions = first.options.reductions.list.size();

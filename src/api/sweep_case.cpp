@@ -66,18 +66,7 @@ const inner::Parameter* parameter_of(const inner::Model& model, const std::strin
   return found == all.end() ? nullptr : &*found;
 }
 
-// Returns the option that gives a parameter a number in SI units. `model`: nullptr if the text cannot be read.
-AskedWord set_word(const inner::Model* model, const std::string& name, const std::string& number) {
-  const inner::Parameter* parameter = model ? parameter_of(*model, name) : nullptr;
-  return {"set", name + "=" + (parameter ? inner::text_in_si(*parameter, number) : number)};
-}
-
-// Reads the model of the sweep.
-Result<Model> model_of(const SweepStore& store) {
-  ReadOptions reading;
-  reading.mode = words_of(store.asked("mode"));
-  return opened(model_asked(store.request()), reading);
-}
+AskedWord set_word(const std::string& name, const std::string& number) { return {"set", name + "=" + number}; }
 
 // Splits a list at its commas; a name that holds a comma is quoted.
 std::vector<std::string> listed(const std::string& text) {
@@ -218,7 +207,39 @@ bool is_motion_option(const std::string& name) {
   return std::any_of(rows.begin(), rows.end(), [&](const inner::MotionOption& o) { return o.name == name; });
 }
 
+// Reads the model of the sweep with its scenarios, of those that vary the first one.
+Result<Model> model_of(const SweepStore& store) {
+  ReadOptions reading;
+  reading.mode = words_of(store.asked("mode"));
+  reading.cases = scenarios(store);
+  if (const std::vector<std::string> all = varied_scenarios(store); !all.empty()) reading.cases.push_back(all.front());
+  return opened(model_asked(store.request()), reading);
+}
+
+// Returns the units in which columns of varied parameters would be now: "m in g, a in deg"; empty if the model cannot be
+// read, or if all of them are in SI units.
+std::string units_now(const SweepStore& store) {
+  const auto& asked = store.request().asked;
+  const auto tells_units = [](const auto& text) { return text.second.find("unit") != std::string::npos; };
+  if (std::none_of(asked.begin(), asked.end(), tells_units)) return {};
+  const Result<Model> model = model_of(store);
+  if (!model) return {};
+  std::string units;
+  for (const std::string& column : store.request().columns)
+    if (const inner::Parameter* p = parameter_of(*model->data().model, column))
+      if (const std::string unit = inner::declared_unit(*p).name; !unit.empty())
+        units += (units.empty() ? "" : ", ") + column + " in " + unit;
+  return units;
+}
+
 }  // namespace
+
+SweepStore opened_to_read(const std::string& folder) {
+  SweepStore store = SweepStore::open(folder);
+  if (!store.request().units.empty()) return store;
+  if (const std::string units = units_now(store); !units.empty()) SweepStore::refuse_si_units(store.folder(), units);
+  return store;
+}
 
 std::vector<AskedWord> words_of_sweep(const SweepStore& store) {
   std::vector<AskedWord> list;
@@ -267,7 +288,6 @@ std::vector<AskedWord> words_of_case(const SweepStore& store, std::size_t number
     const auto& names = std::get<inner::Words>(keeps(column(rows, "case_name"), "case")->values);
     list.push_back({"case", names.different[names.rows[row]]});
   }
-  const Result<Model> model = model_of(store);
   for (const std::string& name : varied(store)) {
     const inner::ParquetColumn* at_start = column(rows, name + std::string(kInitial));
     const inner::ParquetColumn* c = keeps(at_start ? at_start : column(rows, name), name);
@@ -275,8 +295,7 @@ std::vector<AskedWord> words_of_case(const SweepStore& store, std::size_t number
     if (!numbers || !std::isfinite((*numbers)[row]))
       throw Failure({}, "the folder holds no number of '" + name + "' in case " + std::to_string(number));
     const std::string value = inner::number_text((*numbers)[row]);
-    list.push_back(at_start ? initial_word(name, value)
-                            : set_word(model ? &*model->data().model : nullptr, name, value));
+    list.push_back(at_start ? initial_word(name, value) : set_word(name, value));
   }
   return list;
 }
@@ -291,7 +310,7 @@ std::vector<AskedWord> words_of_numbers(const inner::Model& model,
     if (of_scenarios && name == "case" && list.empty())
       list.push_back({name, value});
     else
-      list.push_back(parameter ? set_word(&model, name, value) : initial_word(name, value));
+      list.push_back(parameter ? set_word(name, value) : initial_word(name, value));
   }
   return list;
 }

@@ -14,6 +14,10 @@ struct AskedWord {
   std::string option, word;
 };
 
+// Opens the folder of a sweep of which numbers are read. Throws Failure without a place as SweepStore::open does, and if
+// columns of parameters that have a unit in the model are in SI units, as earlier builds wrote them.
+inner::SweepStore opened_to_read(const std::string& folder);
+
 // Returns the words that the motions of all cases of the sweep share.
 std::vector<AskedWord> words_of_sweep(const inner::SweepStore& store);
 

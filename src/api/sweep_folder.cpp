@@ -345,6 +345,7 @@ static Result<SweepFolder> opened(std::shared_ptr<const PreparedSweep> prepared,
   TabledPieces tabled(*prepared);
   inner::SweepRequest request{asked_of(*prepared), {}, prepared->cases, chunk, recipe};
   for (const inner::SweepColumn& c : tabled.tables.front().columns()) request.columns.push_back(c.name);
+  request.units = tabled.tables.front().units();
   std::optional<inner::RefineRule> rule;
   if (refine) rule = rule_for(*prepared, request.columns, *refine);
   if (chunk > inner::kMostInPart) return mistake("a part has at most " + std::to_string(inner::kMostInPart) + " cases");
@@ -372,8 +373,7 @@ Result<SweepFolder> sweep_into(const Model& model, const SweepOptions& asked, co
 
 Result<SweepFolder> open_sweep(const std::string& folder) {
   return told([&]() -> Result<SweepFolder> {
-    return SweepFolder(
-        std::make_shared<const SweepFolder::Data>(SweepFolder::Data{inner::SweepStore::open(folder), {}}));
+    return SweepFolder(std::make_shared<const SweepFolder::Data>(SweepFolder::Data{opened_to_read(folder), {}}));
   });
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "ensemble/reduce/reductions.h"
+#include "modelfile/names/declared_unit.h"
 #include "simulation/simulate.h"
 
 namespace anholon {
@@ -14,10 +15,11 @@ struct Varied {
   std::size_t index = 0;  // of the parameter, or of the coordinate
   unsigned order = 0;     // initial value of q^(order)
   std::string name;
+  DeclaredUnit unit = {};  // of a parameter
 };
 
 struct EnsembleCase {
-  std::vector<Rational> values;  // of the varied numbers
+  std::vector<Rational> values;  // of the varied numbers: parameters in the units that the file declares for them
   std::optional<Rational> to;    // the end, if the case has one of its own
 };
 
@@ -62,7 +64,7 @@ struct EnsembleOptions {
 
 struct CaseResult {
   std::size_t number = 0;
-  std::vector<double> values;  // of the varied numbers
+  std::vector<double> values;  // of the varied numbers, as in EnsembleCase
   Outcome outcome;
   double t = 0;  // the time reached
   std::size_t steps = 0;

@@ -71,7 +71,7 @@ static Outcome with_numbers(const Scenario& of_all, const EnsembleOptions& o, co
   const std::shared_ptr<Model> model = o.each_anew ? clone(*o.each_anew) : given_model(of_all);
   for (std::size_t i = 0; i < o.varied.size(); ++i)
     if (o.varied[i].kind == Varied::Kind::parameter)
-      model->parameters[o.varied[i].index].value = model->graph->number(numbers.values[i]);
+      model->parameters[o.varied[i].index].value = model->graph->number(o.varied[i].unit.in_si(numbers.values[i]));
   StateChoice state = o.state;
   state.overrides = overrides_of(o, &numbers);
   if (o.switches)

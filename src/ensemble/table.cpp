@@ -17,8 +17,15 @@ constexpr std::size_t kCase = 0, kOutcome = 0, kEvent = 1, kTime = 2, kSteps = 3
 
 }  // namespace
 
+std::string units_of(const std::vector<Varied>& varied) {
+  std::string units;
+  for (const Varied& v : varied)
+    if (!v.unit.name.empty()) units += (units.empty() ? "" : ", ") + v.name + " in " + v.unit.name;
+  return units;
+}
+
 SweepTable::SweepTable(const Model& model, const EnsembleOptions& o)
-    : varied_(o.varied.size()), state_(0), reduced_(o.reductions.list.size()) {
+    : varied_(o.varied.size()), state_(0), reduced_(o.reductions.list.size()), units_(units_of(o.varied)) {
   available_.push_back({"case", Holds::whole_numbers});
   // A varied initial value has a name that differs from the final value's.
   for (const Varied& v : o.varied)

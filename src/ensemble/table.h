@@ -11,6 +11,9 @@
 
 namespace anholon {
 
+// Returns the units of the varied parameters that have one other than the SI unit: "m in g, a in deg".
+std::string units_of(const std::vector<Varied>& varied);
+
 class SweepTable {
  public:
   SweepTable(const Model& model, const EnsembleOptions& options);
@@ -23,6 +26,8 @@ class SweepTable {
   // times, and what varies) come before them if they are not among them. The reductions, which were requested by name,
   // come after them.
   void choose(const std::vector<std::size_t>& columns);
+  // The units of what varies.
+  const std::string& units() const { return units_; }
   // Throws Failure without a place if two of the columns have one name, as when a monitor is called "outcome": readers
   // of a file could not distinguish them.
   void must_tell_columns_apart() const;
@@ -39,6 +44,7 @@ class SweepTable {
   std::vector<SweepColumn> available_;
   std::vector<std::size_t> chosen_;
   std::size_t varied_, state_, reduced_;
+  std::string units_;
   std::vector<double> times_;
   bool named_ = false;    // the column of a word exists
   bool chooses_ = false;  // columns were chosen

@@ -63,7 +63,8 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     if (model.parameters[i].name == name && primes > 0)
       mistake_in(word, 0, text.size(), "'" + name + "' is a parameter, which has no velocity", "vary " + name);
-    if (model.parameters[i].name == name) return {Varied::Kind::parameter, i, 0, name};
+    if (model.parameters[i].name == name)
+      return {Varied::Kind::parameter, i, 0, name, declared_unit(model.parameters[i])};
     known.push_back(model.parameters[i].name);
   }
   known.insert(known.end(), coordinates.begin(), coordinates.end());
@@ -154,7 +155,7 @@ void Variation::add(const std::string& name, const std::vector<Constant>& values
   if (together_) common_ = listed.axis;
   for (const Constant& value : values) {
     if (const auto wrong = of.misfit(value)) mistake_in(name, 0, name.size(), wrong->message, wrong->hint(""));
-    list.push_back(of.in_si(value));
+    list.push_back(of.number(value));
   }
   listed.range = ValueRange(std::move(list));
 }
@@ -180,7 +181,6 @@ void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) 
     Values& cell = values_.emplace_back();
     cell.cell = k;
     cell.axis = axis;
-    cell.bare = quantities.back().in_si({1, std::nullopt});
   }
   table_ = std::move(table);
   for (std::size_t row = 0; row < table_->rows(); ++row) {
@@ -253,7 +253,7 @@ std::vector<Rational> Variation::operator()(std::size_t number) const {
     } else if (v.cell) {
       if (cells.empty()) cells = table_->cells(points[v.axis]);
       const Constant c = constant_of(cells[*v.cell], {0, cells[*v.cell]});
-      out[i] = c.dimension ? c.value : Rational(c.value * v.bare);
+      out[i] = c.dimension ? varied_[i].unit.number(c.value) : c.value;
     } else {
       out[i] = (*v.range)[points[v.axis]];
     }

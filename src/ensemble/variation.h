@@ -39,7 +39,7 @@ class Variation {
 
   const std::vector<Varied>& varied() const { return varied_; }
   std::size_t cases() const { return cases_; }
-  // The values of a case; they depend on the number of the case alone. Cases run through the grid, the last name
+  // The numbers of a case, as in EnsembleCase; they depend on the number of the case alone. Cases run through the grid, the last name
   // fastest.
   std::vector<Rational> operator()(std::size_t number) const;
 
@@ -55,7 +55,6 @@ class Variation {
     std::optional<ValueRange> range;  // of a grid or a list
     std::optional<std::size_t> cell;  // the cell in a line of the table
     std::size_t axis = 0;             // of a range or a cell
-    Rational bare = 1;                // a bare number 1 of a cell in SI units
     enum class Law : std::uint8_t { normal, uniform } law = Law::normal;
     double a = 0, b = 0;  // parameters of the distribution
     std::uint32_t stream = 0;

@@ -344,7 +344,7 @@ Linearization linearize(const Scenario& s, const StateChoice& choice, const Para
                         const Signals& signals) {
   const ScenarioAt scenario_at = [&](const Rational& value, Scenario& scenario) {
     const std::shared_ptr<Model> model = given_model(s);
-    model->parameters[range.parameter].value = model->graph->number(value);
+    model->parameters[range.parameter].value = model->graph->number(range.unit.in_si(value));
     return make_scenario(model, *s.system.form, choice, scenario);
   };
   return linearize(scenario_at, choice, range, true, signals);

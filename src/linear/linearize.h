@@ -11,12 +11,14 @@
 #include <functional>
 
 #include "linear/linear_model.h"
+#include "modelfile/names/declared_unit.h"
 
 namespace anholon {
 
 struct ParameterRange {
   std::size_t parameter = 0;
-  std::vector<Rational> values;
+  std::vector<Rational> values;  // in this unit, as are all values of the parameter in the results
+  DeclaredUnit unit = {};
 };
 
 struct LinearResult {
@@ -43,7 +45,7 @@ struct Linearization {
   std::vector<std::string> notes;  // about crossings that were not found, and jumps
 };
 
-// Makes the scenario of a value of the parameter.
+// Makes the scenario of a value of the parameter, in the unit of the range.
 using ScenarioAt = std::function<Outcome(const Rational& value, Scenario& scenario)>;
 
 // Linearizes in the working precision that the caller has set (PrecisionScope). The signals are expressions of the

@@ -47,6 +47,7 @@ ParameterRange read_range(const std::string& word, const Model& model) {
   } catch (const Failure& f) {
     mistake_in(word, 0, sign, f.diagnostic.message, f.diagnostic.hint);
   }
+  range.unit = declared_unit(model.parameters[range.parameter]);
   GivenQuantity of = GivenQuantity::of_parameter(model, range.parameter);
   const ValueRange values = read_value_range(word, sign, of, kMostValues);
   for (std::size_t k = 0; k < values.size(); ++k) range.values.push_back(values[k]);
@@ -86,7 +87,7 @@ Linearization LinearStudy::compute() const {
     const ParameterRange& range = *request_.range;
     const ScenarioAt scenario_at = [&](const Rational& value, Scenario& scenario) {
       const std::shared_ptr<Model> model = clone(*model_);
-      model->parameters[range.parameter].value = model->graph->number(value);
+      model->parameters[range.parameter].value = model->graph->number(range.unit.in_si(value));
       return make(*model, scenario);
     };
     const bool in_exponents = !exponents_of(*clone(*model_), {range.parameter}).empty();

@@ -127,7 +127,7 @@ GivenQuantity GivenQuantity::of_parameter(const Model& model, std::size_t index)
   const Parameter& p = model.parameters[index];
   GivenQuantity of(model, p.name, unit_at(model.parameter_units, index), 0);
   of.declared_ = p.unit;
-  if (!p.unit.empty()) of.bare_ = read_constant("1 " + p.unit).value;
+  of.bare_ = anholon::declared_unit(p);
   return of;
 }
 GivenQuantity GivenQuantity::of_coordinate(const Model& model, std::size_t index, unsigned order) {
@@ -172,13 +172,6 @@ std::optional<GivenQuantity::Misfit> GivenQuantity::misfit(const Constant& value
 std::string GivenQuantity::Misfit::hint(const std::string& before) const {
   if (unit.empty()) return "a bare number, in the units that the model is meant in";
   return unit == "1" ? "a bare number, or an angle: 30 deg" : before + "in " + unit + ", or a bare number in " + bare;
-}
-
-std::string text_in_si(const Parameter& parameter, const std::string& number) {
-  if (parameter.unit.empty()) return number;
-  const auto unit = read_unit(parameter.unit);
-  const std::string in_si = !unit || unit->dimension == Dimension{} ? "rad" : print(unit->dimension);
-  return number.find('/') == std::string::npos ? number + " " + in_si : number + "*(1 " + in_si + ")";
 }
 
 static Rational value_in(const Dimension& wanted, const Constant& value, const std::string& called) {

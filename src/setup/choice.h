@@ -2,6 +2,7 @@
 // library share these functions. All of them throw Failure without a place.
 #pragma once
 #include "modelfile/names/constant.h"
+#include "modelfile/names/declared_unit.h"
 #include "setup/scenario.h"
 
 namespace anholon {
@@ -47,22 +48,20 @@ class GivenQuantity {
   };
   // Returns nullopt if the value has no unit or a unit of this quantity.
   std::optional<Misfit> misfit(const Constant& value);
-  // Returns the value in SI units. A bare number counts in the unit that the file declares for the parameter.
-  Rational in_si(const Constant& value) const { return value.dimension ? value.value : Rational(value.value * bare_); }
+  // Returns the number of the value as users see it: that of a parameter is in the unit that the file declares for it,
+  // and a bare number is given in this unit.
+  Rational number(const Constant& value) const { return value.dimension ? bare_.number(value.value) : value.value; }
 
  private:
   GivenQuantity(const Model& model, std::string name, std::string unit, unsigned order);
 
   const Model* model_;
   std::string name_, unit_;  // unit_: the SI unit, empty if it is unknown
-  std::string declared_;     // the unit of bare numbers, empty if it is the SI unit
-  Rational bare_ = 1;        // a bare number 1 in SI units
+  std::string declared_;     // the unit of bare numbers as the file writes it; empty if the file declares none
+  DeclaredUnit bare_;        // the same
   unsigned order_;
   bool looked_ = false;
 };
-// Returns the text by which --set gives the parameter a number in SI units: "0.25 m", "1/3*(1 m)", or "0.25" if bare numbers
-// count in SI units.
-std::string text_in_si(const Parameter& parameter, const std::string& number);
 // Return the value of a time in s, and of a pure number. Both throw if the value has another unit; `called` begins the
 // message: "--to: ".
 Rational time_value(const Constant& value, const std::string& called);

@@ -22,7 +22,7 @@ std::size_t number_of_case(const std::string& text) {
 }
 
 std::string motion_of_case(const std::string& folder, std::size_t number) {
-  const SweepStore store = SweepStore::open(folder);
+  const SweepStore store = v1::opened_to_read(folder);
   const v1::Result<v1::System> system = v1::system_of_case(store, number);
   if (!system) return error_answer(system.error(), "");
   v1::MotionOptions options = v1::drawn_case(store, *system);

@@ -138,7 +138,7 @@ bool SweepCases::are_in(const std::string& path) {
 
 SweepCases::SweepCases(const std::string& path) {
   if (SweepStore::is_there(path)) {
-    store_ = SweepStore::open(path);
+    store_ = opened_to_read(path);
     names_ = store_->request().columns;
     read_model();
   } else {
@@ -234,6 +234,8 @@ void SweepCases::read_model() {
   if (!open) return;
   for (const auto& [name, unit] : inner::quantity_units(*open->model, inner::contacts(*open->names)))
     known_[name].unit = unit;
+  // Scenarios may declare other units.
+  for (const auto& [column, unit] : units_of_columns(*store_)) known_[column].unit = unit;
   const inner::Model& model = *open->model;
   for (std::size_t k = 0; k < std::min(model.parameters.size(), model.parameter_units.size()); ++k)
     known_[model.parameters[k].name].meaning = model.parameters[k].doc;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "api/sweep_case.h"
 #include "base/json.h"
 #include "cli/commands.h"
 #include "cli/motions/progress.h"
@@ -229,6 +230,7 @@ int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep) {
   SweepRequest request{
       sweep.asked, {}, sweep.cases, o.chunk.empty() ? 0 : count_asked("--chunk", "cases", o.chunk, 1, kMostInPart)};
   request.model_name = o.model;
+  request.units = sweep.pieces.front().table->units();
   for (const SweepColumn& c : sweep.pieces.front().table->columns()) request.columns.push_back(c.name);
   const Refinement refinement = refinement_of(o, sweep, request.columns);
   if (request.chunk == 0) request.chunk = SweepStore::is_there(o.output) ? 1 : cases_in_part(sweep.pieces);
@@ -352,7 +354,7 @@ int sweep_status(const SweepFolderCommand& o) {
 }
 
 int sweep_collect(const SweepFolderCommand& o) {
-  const SweepStore store = SweepStore::open(o.folder);
+  const SweepStore store = v1::opened_to_read(o.folder);
   const ResultFormat& format = sweep_format(o.output, o.json);
   const std::vector<std::size_t> parts = store.present();
   if (parts.size() < store.parts() && !o.partial)

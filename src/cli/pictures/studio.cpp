@@ -8,6 +8,7 @@
 #include <spawn.h>
 
 #include "api/pictures/sweep_cases.h"
+#include "api/sweep_case.h"
 #include "base/platform/installed.h"
 #include "cli/input.h"
 #include "cli/pictures/child.h"
@@ -40,7 +41,7 @@ void open_browser(const std::string& address) {
 void open(const std::string& name, StudioOptions& options) {
   std::error_code none;
   if (SweepStore::is_there(name)) {
-    SweepStore::open(name);  // throws Failure if it is damaged
+    v1::opened_to_read(name);  // throws Failure if it cannot be read
     options.sweep = name;
     return;
   }

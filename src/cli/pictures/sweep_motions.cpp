@@ -66,7 +66,7 @@ HeldMotions held_motions(const PlotCommand& o, const std::vector<MappedCase>& ma
         "error: --motions: " + o.run +
         " does not tell the model of the sweep\nhint: a sweep in a folder does: anholon sweep MODEL --vary … "
         "-o falls/\n"};
-  const SweepStore store = SweepStore::open(o.run);
+  const SweepStore store = v1::opened_to_read(o.run);
   const std::vector<std::size_t> cases = chosen_cases(mapped, static_cast<std::size_t>(o.motions));
   catch_stop(o.output);
   HeldMotions held;

@@ -123,7 +123,8 @@ std::vector<N> CaseParameters::values(const std::vector<Rational>& numbers) cons
   std::vector<N> list(n, N(0));
   if (n == 0) return list;
   for (std::size_t i = 0; i < varied_.size(); ++i)
-    if (varied_[i].kind == Varied::Kind::parameter) list[varied_[i].index] = from_rational<N>(numbers[i]);
+    if (varied_[i].kind == Varied::Kind::parameter)
+      list[varied_[i].index] = from_rational<N>(varied_[i].unit.in_si(numbers[i]));
   Machine<N> machine(tape_, 0, list);
   machine.evaluate();
   for (std::size_t i = 0; i < n; ++i) list[i] = machine.value(i);

@@ -213,7 +213,8 @@ void CaseWorker::by_simulation(const EnsembleCase& numbers, CaseResult& r) {
   Workspace own(plan_.of_all);
   const EnsembleOptions& o = plan_.options;
   for (std::size_t i = 0; i < o.varied.size(); ++i)
-    if (o.varied[i].kind == Varied::Kind::parameter) own.set_parameter(o.varied[i].index, numbers.values[i]);
+    if (const Varied& v = o.varied[i]; v.kind == Varied::Kind::parameter)
+      own.set_parameter(v.index, v.unit.in_si(numbers.values[i]));
   const std::vector<StateOverride> overrides = overrides_of(o, &numbers);
   const bool may_be_no_rotation = !plan_.plain && plan_.parameters.may_be_no_rotation();
   if (may_be_no_rotation || (!overrides.empty() && r.replaced.empty())) {

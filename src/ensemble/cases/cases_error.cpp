@@ -49,7 +49,8 @@ Outcome FurtherRuns::begin(const EnsembleCase& numbers) {
   if (own_ && !exponents_vary_ && !o_.each_anew &&
       parameters_->same_structure(parameters_->values<double>(numbers.values))) {
     for (std::size_t i = 0; i < o_.varied.size(); ++i)
-      if (o_.varied[i].kind == Varied::Kind::parameter) own_->set_parameter(o_.varied[i].index, numbers.values[i]);
+      if (const Varied& v = o_.varied[i]; v.kind == Varied::Kind::parameter)
+        own_->set_parameter(v.index, v.unit.in_si(numbers.values[i]));
     if (const std::optional<Outcome> begun = begin_anew(*own_, state)) return *begun;
   }
   compared_ = {};

@@ -11,7 +11,9 @@ namespace anholon {
 
 namespace {
 
-constexpr int kVersion = 1;
+// In folders of the first version columns of parameters are in SI units. The second one is that of sweeps of which
+// columns are in other units.
+constexpr int kVersion = 1, kVersionWithUnits = 2;
 constexpr const char *kBase = "base file ", *kTable = "data file ";
 
 // Returns a text as JSON gives it back: bytes that are not UTF-8 are lost.
@@ -23,7 +25,8 @@ std::string as_kept(const std::string& text) {
 
 std::string request_json(const SweepRequest& r, const std::string& program) {
   JsonWriter j;
-  j.open_object().key("format").string("anholon sweep").key("format_version").integer(kVersion);
+  j.open_object().key("format").string("anholon sweep").key("format_version");
+  j.integer(r.units.empty() ? kVersion : kVersionWithUnits);
   j.key("program").string(program);
   j.key("cases").integer(static_cast<long long>(r.cases)).key("chunk").integer(static_cast<long long>(r.chunk));
   j.key("columns").open_array();
@@ -31,6 +34,7 @@ std::string request_json(const SweepRequest& r, const std::string& program) {
   j.close().key("asked").open_object();
   for (const auto& [name, text] : r.asked) j.key(name).string(text);
   j.close();
+  if (!r.units.empty()) j.key("units").string(r.units);
   if (!r.recipe.empty()) j.key("recipe").string(r.recipe);
   if (!r.model_name.empty()) j.key("model_name").string(r.model_name);
   return j.close().text() + "\n";
@@ -43,8 +47,10 @@ SweepRequest request_of(const std::string& text, const std::string& path) {
   };
   const Json j = Json::parse(text, nullptr, false);
   if (!j.is_object() || j.value("format", Json()) != "anholon sweep") return refuse("does not tell of a sweep");
-  if (const Json version = j.value("format_version", Json()); version != kVersion)
-    return refuse("is of version " + version.dump() + ", and this program reads version " + std::to_string(kVersion));
+  const Json version = j.value("format_version", Json());
+  if (version != kVersion && version != kVersionWithUnits)
+    return refuse("is of version " + version.dump() + ", and this program reads the versions " +
+                  std::to_string(kVersion) + " and " + std::to_string(kVersionWithUnits));
   const auto count = [&](const char* key) {
     const auto at = j.find(key);
     return at != j.end() && at->is_number_unsigned() ? at->get<std::size_t>() : std::size_t{0};
@@ -65,6 +71,8 @@ SweepRequest request_of(const std::string& text, const std::string& path) {
   }
   if (const auto recipe = j.find("recipe"); recipe != j.end() && recipe->is_string())
     r.recipe = recipe->get<std::string>();
+  if (const auto units = j.find("units"); units != j.end() && units->is_string()) r.units = units->get<std::string>();
+  if (r.units.empty() != (version == kVersion)) return refuse("is damaged");
   if (const auto named = j.find("model_name"); named != j.end() && named->is_string())
     r.model_name = named->get<std::string>();
   if (const auto made = j.find("program"); made != j.end() && made->is_string()) r.program = made->get<std::string>();

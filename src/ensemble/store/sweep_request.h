@@ -25,6 +25,9 @@ struct SweepRequest {
   std::string model_name = {};
   // The version of the program that made the folder, if the request comes from one.
   std::string program = {};
+  // The units of the varied parameters that have one other than the SI unit in the model, in which their columns are:
+  // "m in g, a in deg".
+  std::string units = {};
 };
 
 // Returns the text of the file. The version of the program is in it, but does not distinguish sweeps.

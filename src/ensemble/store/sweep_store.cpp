@@ -63,6 +63,7 @@ void must_agree(const std::string& folder, const SweepRequest& there, const Swee
       const std::string old = text_in(there), now = text_in(here);
       if (old != now) refuse(name, shown(old), shown(now));
     }
+  if (there.units != here.units) refuse("units of parameters", shown(there.units), shown(here.units));
   if (there.cases != here.cases) refuse("the number of cases", std::to_string(there.cases), std::to_string(here.cases));
   for (std::size_t k = 0; k < std::max(there.columns.size(), here.columns.size()); ++k) {
     const auto name = [&](const SweepRequest& r) { return k < r.columns.size() ? r.columns[k] : std::string(); };
@@ -223,10 +224,20 @@ SweepStore SweepStore::open(const std::string& named, const SweepRequest& wanted
     made = done.how == Committed::How::mine;
   }
   SweepStore store = open(folder);
+  if (store.request_.units.empty() && !wanted.units.empty()) refuse_si_units(folder, wanted.units);
   must_agree(folder, store.request_, wanted);
   store.made_here_ = made;
   clear_unfinished(folder);
   return store;
+}
+
+void SweepStore::refuse_si_units(const std::string& folder, const std::string& units) {
+  throw Failure({},
+                folder +
+                    " was made by an earlier build, and its columns of parameters are in SI units; now a column is in "
+                    "the unit that the file declares: " +
+                    units,
+                "compute the sweep again in another folder; the build that made this one reads it");
 }
 
 const std::string& SweepStore::asked(const std::string& name) const {

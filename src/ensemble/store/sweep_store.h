@@ -31,6 +31,9 @@ class SweepStore {
   static SweepStore open(const std::string& folder, const SweepRequest& wanted, const std::string& program);
   // Opens a folder that contains a sweep. Throws Failure without a place.
   static SweepStore open(const std::string& folder);
+  // Throws Failure without a place that names the folder: its parameters are in SI units, and a program that made it now
+  // would have columns in these units (SweepRequest::units).
+  [[noreturn]] static void refuse_si_units(const std::string& folder, const std::string& units);
   // True if a folder contains a sweep.
   static bool is_there(const std::string& folder);
 

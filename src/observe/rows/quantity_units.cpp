@@ -1,5 +1,6 @@
 #include "observe/rows/quantity_units.h"
 
+#include "modelfile/names/declared_unit.h"
 #include "observe/rows/row_values.h"
 
 namespace anholon {
@@ -7,8 +8,9 @@ namespace anholon {
 std::map<std::string, std::string> quantity_units(const Model& model, const std::vector<Contact>& contacts) {
   std::map<std::string, std::string> units = column_units(model);
   units.merge(column_units(contacts));
-  for (std::size_t k = 0; k < model.parameters.size() && k < model.parameter_units.size(); ++k)
-    if (!model.parameter_units[k].empty()) units.emplace(model.parameters[k].name, model.parameter_units[k]);
+  for (std::size_t k = 0; k < model.parameters.size(); ++k)
+    if (const std::string unit = unit_of_parameter(model, k); !unit.empty())
+      units.emplace(model.parameters[k].name, unit);
   return units;
 }
 

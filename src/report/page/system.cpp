@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "modelfile/names/declared_unit.h"
 #include "motion/start.h"
 #include "numeric/number.h"
 #include "print/print_names.h"
@@ -69,11 +70,11 @@ class SystemSection {
   }
 
   std::string parameters() const {
-    const std::vector<double> values = parameter_values<double>(model_);
+    const std::vector<double> values = parameters_as_given(model_);
     std::vector<std::vector<std::string>> rows;
     constexpr std::size_t kMost = 80;
     for (std::size_t k = 0; k < std::min(values.size(), kMost); ++k) {
-      const std::string unit = k < model_.parameter_units.size() ? model_.parameter_units[k] : "";
+      const std::string unit = unit_of_parameter(model_, k);
       rows.push_back({math(print(model_.graph->parameter(static_cast<std::uint32_t>(k)), model_.names, Format::mathml)),
                       markup_escape(number_text(values[k])), user(unit), user(model_.parameters[k].doc)});
     }

@@ -118,7 +118,7 @@ Rational number_of(const std::string& word, const WordPart& part, GivenQuantity&
   const WordPart p = without_blanks(word, part);
   const Constant c = constant_in(word, p);
   if (const auto wrong = of.misfit(c)) mistake_in(word, p.at, p.text.size(), wrong->message, wrong->hint("a number "));
-  return of.in_si(c);
+  return of.number(c);
 }
 
 Rational ValueRange::operator[](std::size_t k) const {

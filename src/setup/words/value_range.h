@@ -22,7 +22,7 @@ std::vector<WordPart> parts_of(const std::string& word, std::size_t from, std::s
 // Reads a number, a formula of numbers and pi, or a number with a unit. Throws MistakeInWord.
 Constant constant_of(const std::string& word, const WordPart& part);
 Rational number_of(const std::string& word, const WordPart& part);
-// Reads the same in SI units; a unit must be that of the quantity.
+// Reads the same; a unit must be that of the quantity, whose number it is (GivenQuantity::number).
 Rational number_of(const std::string& word, const WordPart& part, GivenQuantity& of);
 
 // Equidistant points, which are computed on demand, or a list.

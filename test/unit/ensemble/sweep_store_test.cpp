@@ -161,6 +161,25 @@ TEST_F(SweepStoreTest, ReadsAFolderOfAnEarlierVersion) {
   EXPECT_EQ(files_of(folder), (std::vector<std::string>{"part-000000.parquet", "sweep.json"}));
 }
 
+// Columns of parameters of a folder without units are in SI units.
+TEST_F(SweepStoreTest, RefusesAFolderWhoseColumnsHaveOtherUnits) {
+  SweepStore::open(folder, request(), "1");
+  std::string text;
+  ASSERT_TRUE(read_file((folder / "_sweep.json").string(), text));
+  EXPECT_NE(text.find("\"format_version\": 1"), std::string::npos) << text;
+  SweepRequest with_units = request();
+  with_units.units = "m in g, a in deg";
+  EXPECT_NE(message([&] { SweepStore::open(folder, with_units, "2"); }).find("SI units"), std::string::npos);
+  const fs::path other = folder / "other";
+  EXPECT_EQ(SweepStore::open(other, with_units, "2").request().units, with_units.units);
+  ASSERT_TRUE(read_file((other / "_sweep.json").string(), text));
+  EXPECT_NE(text.find("\"format_version\": 2"), std::string::npos) << text;
+  with_units.units = "m in kg";
+  EXPECT_NE(message([&] { SweepStore::open(other, with_units, "2"); }).find("units of parameters"), std::string::npos);
+  with_units.units.clear();
+  EXPECT_NE(message([&] { SweepStore::open(other, with_units, "2"); }).find("units of parameters"), std::string::npos);
+}
+
 TEST_F(SweepStoreTest, RefusesAnotherSweep) {
   SweepStore::open(folder, request(), "1");
   SweepRequest other = request();
