@@ -32,8 +32,8 @@ struct StateName {
 // A function  x' = f(t, x, u, p)  with outputs  y = h(t, x, u, p).  p: the parameters of the model that do not follow from
 // others, without those whose values decide the order of the equations, such as a mass that is 0, or which constraints
 // with `active` hold. A power with an exponent of parameters has a value at every state if p makes the exponent a whole
-// number, and for positive bases otherwise. Immutable, cheap to copy, and safe to use from many threads. All numbers are in
-// SI units.
+// number, and for positive bases otherwise. Immutable, cheap to copy, and safe to use from many threads. Numbers are in SI
+// units; an output that has a unit in the file is in that unit.
 class ANHOLON_API Dynamics {
  public:
   // What x holds: coordinates, velocities, higher derivatives, then the model's states.

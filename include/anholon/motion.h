@@ -86,7 +86,8 @@ class ANHOLON_API Run {
   const Outcome& outcome() const;
   std::size_t rows() const;
   const std::vector<Column>& columns() const;
-  // The numbers of a column, one for each row, in SI units; empty if there is no column of that name.
+  // The numbers of a column, one for each row, in SI units, or in the unit that the file gives an output; empty if there
+  // is no column of that name.
   std::span<const double> column(const std::string& name) const;
   std::span<const double> t() const { return column("t"); }
   // All numbers in one block, column after column: those of columns()[k] begin at k * rows().

@@ -47,14 +47,25 @@ def by_spelled_names(values: Mapping[str, V], what: str) -> dict[str, V]:
     return found
 
 
+class UnknownName(KeyError):
+    """There is no value of a name. The text says which names there are."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 class ByName(dict[str, V]):
     """Values by name. A name with Greek letters finds the value of its spelled name."""
 
     def __missing__(self, name: str) -> V:
         own = spelled(name) if isinstance(name, str) else name
         if own == name or not super().__contains__(own):
-            raise KeyError(name)
+            raise UnknownName(f"there is no {name!r} here\nthe names are {', '.join(map(str, self)) or 'none'}{self._hint(name)}")
         return self[own]
+
+    def _hint(self, name: object) -> str:
+        """Returns the end of the message about an unknown name."""
+        return ""
 
     def __contains__(self, name: object) -> bool:
         return super().__contains__(name) or (isinstance(name, str) and super().__contains__(spelled(name)))

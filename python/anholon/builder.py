@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Union
 
-from ._errors import ModelError
+from ._errors import ModelError, MotionError
 from ._model_file import ModelFile, value_text
 from .expressions import Body, Equation, Expr, Place, Rotation, Term, _named, expr
 from .functions import norm, unit
@@ -98,7 +98,10 @@ class Builder:
         except ModelError as error:
             raise self._file.in_python(error) from None
         if check:
-            made.check()
+            try:
+                made.check()
+            except MotionError as error:
+                raise MotionError(self._file.with_lines_of_python(str(error)), error.outcome) from None
         return made
 
     def _entry(self, section: str, name: str, value: object) -> None:

@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 
 
 class Dynamics:
-    """A function f(t, x, u, p) -> x' in SI units, with outputs y. Threads may share it; large batches use all cores.
+    """A function f(t, x, u, p) -> x', with outputs y. Threads may share it; large batches use all cores.
+
+    Numbers are in SI units; an output that has a unit in the file is in that unit.
 
     :meth:`Model.dynamics` returns one. It can be pickled, for example for the workers of an optimizer; each process derives the
     equations again.

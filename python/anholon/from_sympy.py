@@ -1,7 +1,8 @@
 """Models from ``sympy.physics.mechanics``: KanesMethod, LagrangesMethod, System.
 
 The import reads the mechanical system (bodies, velocities, loads and constraints) and derives its equations anew. It replaces
-generalized speeds by the rates of the coordinates, sets auxiliary speeds to zero, and turns loads into generalized forces.
+generalized speeds by the rates of the coordinates, sets auxiliary speeds to zero, and turns loads into generalized forces. If loads
+depend on forces along auxiliary speeds, these are solved for by the auxiliary equations.
 
 A mass centre of which SymPy knows the velocity only, not the position, gets coordinates of its own, whose rates constraints equate to
 the velocity, unless the velocity is the rate of an expression. A speed without a coordinate (the spin of a wheel) gets a coordinate
@@ -24,6 +25,7 @@ from typing import Any
 
 from ._errors import ModelError
 from ._numbers import float_of, Number, text_of
+from ._sympy_auxiliary import AuxiliaryForces
 from ._sympy_bodies import Bodies
 from ._sympy_parts import (
     atoms_of,
@@ -70,6 +72,8 @@ class _Import:
         self.bodies = Bodies(self)
         self._place_centers([u for u in parts.u if u not in known])
         self._look_at_acceleration_constraints()
+        motion = {self.time, *parts.q, *parts.u, *parts.auxiliary}
+        self._auxiliary_forces = AuxiliaryForces(method, parts.auxiliary, self.in_rates, motion)
 
     def _without_auxiliary(self) -> None:
         """Sets auxiliary speeds to zero in equations and constraints; ``in_rates`` sets them to zero in velocities and loads."""
@@ -306,7 +310,14 @@ class _Import:
         return terms
 
     def generalized_forces(self) -> dict[Any, Any]:
-        """Returns the sum of the generalized forces of all loads, by coordinate."""
+        """Returns the sum of the generalized forces of all loads, by coordinate. Forces along auxiliary speeds that remain in it are
+        replaced by the formulas that the auxiliary equations give."""
+        sums = self._sums_of_forces({})
+        found = self._auxiliary_forces.found(sums, self._given)
+        return self._sums_of_forces(found) if found else sums
+
+    def _sums_of_forces(self, found: Mapping[Any, Any]) -> dict[Any, Any]:
+        """Returns the sum of the generalized forces of all loads, by coordinate, in which these symbols have these values."""
         Point, ReferenceFrame = mechanics_module().Point, mechanics_module().ReferenceFrame
 
         sm, frame = self.sm, self.parts.frame
@@ -315,11 +326,11 @@ class _Import:
             at, what = load[0], load[1]
             if isinstance(at, (Point, ReferenceFrame)):
                 flow = self.components(at.vel(frame) if isinstance(at, Point) else at.ang_vel_in(frame))
-                force = self.components(what)
+                force = [x.xreplace(found) for x in self.components(what)]
                 for q, rate in zip(self.writer.q, self.writer.rates, strict=True):
                     sums[q] = sums.get(q, 0) + sum((f * sm.diff(v, rate) for f, v in zip(force, flow, strict=True)), sm.Integer(0))
             else:
-                sums[at] = sums.get(at, 0) + self.in_rates(what)
+                sums[at] = sums.get(at, 0) + self.in_rates(what).xreplace(found)
         self._add_varying(sums)
         sums = {q: self._without_what_cancels(real(s)) for q, s in sums.items()}
         return {q: s for q, s in sums.items() if s != 0}
@@ -488,7 +499,8 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
         A model; ``model.text`` is its file. Coordinates and parameters keep their names if the model language allows them.
 
     Raises:
-        ModelError: a part of the system has no counterpart in a model; the system has no symbol or function of a name in `values`, or no
+        ModelError: a part of the system has no counterpart in a model; a load depends on a force along an auxiliary speed that the
+            auxiliary equations do not determine; the system has no symbol or function of a name in `values`, or no
             coordinate, rate or speed of a key of `initial`.
         TypeError: `method` is another object; `values` or `initial` is no mapping.
 

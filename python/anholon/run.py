@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _arrow, _core, _display, _widget
 from ._errors import ColumnError, ModelError, MotionError
-from ._names import ByName, known
+from ._names import ByName, known, spelled
 from ._recipe import KeptRun, Recipe
 
 if TYPE_CHECKING:
@@ -76,6 +76,24 @@ class Figure:
         return f"<figure, {len(self.svg) / 1000:.0f} kB of SVG; a notebook shows it, save(path) writes it>"
 
 
+class _AtTimes(ByName[Any]):
+    """The derivatives of one order of a motion at given times, by the names of coordinates and states."""
+
+    def __init__(self, values: dict[str, Any], order: int, columns: list[str]) -> None:
+        super().__init__(values)
+        self._order, self._columns = order, columns
+
+    def _hint(self, name: object) -> str:
+        if not isinstance(name, str):
+            return ""
+        plain = spelled(name)
+        base = plain.rstrip("'")
+        if base != plain and base in self:
+            return f"\nhint: run(t, order={self._order + len(plain) - len(base)})[{base!r}]"
+        column = known(name, self._columns)
+        return f"\nhint: run[{column!r}] is a column over the rows; simulate(at=[…]) has rows at any times" if column in self._columns else ""
+
+
 class Run:
     """The run of one motion. ``run["theta"]`` is a read-only array of the memory of the library, not a copy.
 
@@ -108,8 +126,9 @@ class Run:
     # ---- arrays ----
 
     def __getitem__(self, name: str) -> Array:
-        """Returns the numbers of a column, shape (rows,), in SI units: "t", "x", "x'", "lambda.rod", "N.x", a state, a monitor.
+        """Returns the numbers of a column, shape (rows,): "t", "x", "x'", "lambda.rod", "N.x", a state, a monitor.
 
+        Numbers are in SI units; an output that has a unit in the file is in that unit.
         A Greek letter and its spelled name are the same name, as in all other functions: ``run["θ"]`` is ``run["theta"]``.
 
         Raises:
@@ -221,8 +240,9 @@ class Run:
             order: the order of the derivative: 0 for the coordinates, 1 for their rates, 2, …
 
         Returns:
-            An array of the shape of t for each coordinate and each state of the model; NaN outside of the motion. A motion
-            that ``stop`` or Ctrl-C ended reaches to its last row.
+            An array of the shape of t for each coordinate and each state of the model, by their names also for ``order=1``; NaN
+            outside of the motion. A motion that ``stop`` or Ctrl-C ended reaches to its last row. Another name is a KeyError, which
+            lists these names.
 
         Raises:
             ModelError: `t` is no time or array of times (``run["x"]`` is the column of a name), or there is no such derivative.
@@ -238,12 +258,13 @@ class Run:
 
         try:
             given = np.asarray(t)
-            # Truth values, dates and durations would convert to numbers, but are no times in seconds.
-            if given.dtype.kind in "bmMc" or (given.dtype.kind == "O" and any(isinstance(x, (bool, np.bool_, np.datetime64, np.timedelta64)) for x in given.flat)):
+            # Truth values, dates, durations and None would convert to numbers, but are no times in seconds.
+            no_times = (bool, np.bool_, np.datetime64, np.timedelta64, bytes, type(None))
+            if given.dtype.kind in "bmMcS" or (given.dtype.kind == "O" and any(isinstance(x, no_times) for x in given.flat)):
                 raise TypeError
             times = np.asarray(given, dtype=np.float64)
         except (TypeError, ValueError):
-            hint = f"run[{t!r}] is the column of that name" if isinstance(t, str) else "run(1.5), run([1, 2.5])"
+            hint = f"run[{t!r}] is the column of that name" if isinstance(t, str) and t in self else "run(1.5), run([1, 2.5])"
             raise ModelError(f"run(t) takes times in seconds, one number or an array, not {t!r:.60}\nhint: {hint}") from None
         if self._dense is None:
             if self._recipe is None:
@@ -256,7 +277,7 @@ class Run:
             raise ModelError(f"order is a whole number from 0 to {most}, the order of the polynomials of this run, not {order!r:.60}\nhint: run(t, order=1) has the rates")
         names = self._moving()
         flat = np.ascontiguousarray(times.ravel())
-        return ByName({name: self._dense.at(name, flat, order).reshape(times.shape) for name in names})
+        return _AtTimes({name: self._dense.at(name, flat, order).reshape(times.shape) for name in names}, order, self.keys())
 
     def _moving(self) -> list[str]:
         return [c.name for c in self.model.coordinates] + self.model.states
@@ -265,7 +286,7 @@ class Run:
         """Returns run(t) of a motion that was ended before its first step, which has one row or none."""
         import numpy as np
 
-        found: dict[str, Array] = ByName()
+        found: dict[str, Array] = _AtTimes({}, order, self.keys())
         for name in self._moving():
             column = name + "'" * order
             value = self[column][0] if len(self) and column in self else np.nan

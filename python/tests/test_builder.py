@@ -1,5 +1,6 @@
 """Models written in Python have the equations and the bits of the files of the zoo; errors name the lines of mistakes."""
 
+import inspect
 import pathlib
 import re
 import subprocess
@@ -14,6 +15,13 @@ import pytest
 from anholon import ex, ey, ez
 
 ZOO: dict[str, Callable[[], an.Builder]] = {}
+
+
+def _line() -> int:
+    """Returns the line of the caller."""
+    frame = inspect.currentframe()
+    assert frame is not None and frame.f_back is not None
+    return frame.f_back.f_lineno
 
 
 def of_the_zoo(write: Callable[[an.Builder], None]) -> Callable[[an.Builder], None]:
@@ -446,6 +454,57 @@ def test_numpy_leaves_products_to_expressions() -> None:
     x = an.expr("x")
     assert (np.float64(0.1) * x).text == "0.1*x" and (np.int64(2) + x).text == "2 + x"
     assert an.expr(np.array([1.0, 0.5, 0.0])).text == "1.0*ex + 0.5*ey + 0.0*ez"
+
+
+def test_lines_that_messages_name_are_those_of_python() -> None:
+    b = an.Builder("t")
+    x, y = b.coordinates("x y")
+    twice = _line()
+    b.coordinate("y")
+    b.particle("p", mass="mm", position=x * ex)
+    b.particle("q", mass="mm", position=y * ex)
+    b.body("q", mass=1, center=x * ex)
+    with pytest.raises(an.ModelError) as told:
+        b.model()
+    text = str(told.value)
+    assert f"{__file__}:{twice + 1}: error: 'y' is already declared in line {twice - 1}\n" in text
+    assert f"{__file__}:{twice + 4}: error: a body 'q' is already declared in line {twice + 3}\n" in text
+    assert f"{__file__}:{twice + 2}: error: unknown name 'mm'\n" in text and f"; it stands in line {twice + 3}, too" in text
+
+
+def test_lines_of_an_inconsistent_start_are_those_of_python() -> None:
+    b = an.Builder("t")
+    x, y = b.coordinates("x y")
+    b.particle("p", mass=1, position=x * ex + y * ey)
+    at = _line()
+    b.constraint("ring", x**2 + y**2 == 1)
+    b.initial({x: 2})
+    with pytest.raises(an.MotionError) as told:
+        b.model(check=True)
+    assert f"x = 2 ({__file__}:{at + 2}) clashes with constraint 'ring' ({__file__}:{at + 1})" in str(told.value)
+
+
+def test_lines_without_a_line_of_python_and_lines_of_other_files() -> None:
+    b = an.Builder("t")
+    b.coordinate("x")
+    told = b._file.with_lines_of_python
+    assert told("see line 1, and line 12 of base.toml, line 3 of 'u.csv', line 2, column 4 of 'u.csv', line 99") == (
+        "see line 1 of Builder.text, and line 12 of base.toml, line 3 of 'u.csv', line 2, column 4 of 'u.csv', line 99 of Builder.text"
+    )
+
+
+def test_a_name_of_another_builder() -> None:
+    a = an.Builder("the other")
+    w = a.coordinate("w")
+    k = a.parameter("spring", 2)
+    b = an.Builder("t")
+    x = b.coordinate("x")
+    b.particle("p", mass=1, position=x * ex + w * ey)
+    b.force("p", -k * x * ex)
+    with pytest.raises(an.ModelError) as told:
+        b.model()
+    for name in ("w", "spring"):
+        assert f"hint: another builder, 'the other', has {name}; formulas hold names of their own builder" in str(told.value)
 
 
 def test_a_builder_runs_as_a_script(tmp_path: pathlib.Path) -> None:

@@ -153,3 +153,23 @@ def test_a_folder_in_another_mode_is_refused(tmp_path: pathlib.Path) -> None:
 def test_programs_of_models_with_contacts_name_the_call(call: str) -> None:
     with pytest.raises(an.ModelError, match=f"'{call}' needs the mode of the contacts"):
         getattr(an.load("stick-slip"), call)()
+
+
+def test_a_state_of_a_mode_in_which_the_file_does_not_start() -> None:
+    ball = an.loads(
+        """
+coordinates = ["x", "z"]
+gravity.field = "-9.81*ez"
+particle = [{name = "ball", mass = 1, position = "x*ex + z*ez"}]
+contact = [{name = "floor", gap = "z", slip = "x'", friction = 0.3}]
+initial = {z = 1}
+"""
+    ).in_mode("floor=sticks")
+    hint = r"z = 1 \(line 6\) clashes with constraint 'floor'.*\nhint: the file may start in another mode: give a state of the chosen one with initial=\{…\}$"
+    for call in (ball.dynamics, ball.linearize, ball.c_code, ball.python_code, ball.initial):
+        with pytest.raises(an.MotionError, match=hint):
+            call()
+    assert ball.dynamics(initial={"z": 0, "x": 2}, minimal=False).start.tolist() == [2, 0, 0, 0]
+    assert "2.0" in ball.c_code(initial={"z": 0, "x": 2})
+    with pytest.raises(an.MotionError, match="hint: leave out"):
+        ball.dynamics(initial={"z": 1})

@@ -3,11 +3,14 @@
 import ctypes
 import gc
 import pathlib
+import pickle
 import resource
 import subprocess
 import sys
 import threading
 from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
 from typing import Any
 
 import anholon as an
@@ -245,10 +248,32 @@ def test_texts_of_values_and_times_are_those_of_the_command_line(disc: an.Model)
 
 def test_a_run_is_called_with_times(disc: an.Model) -> None:
     run = disc.simulate(to=1)
+    halves: list[Any] = [Fraction(1, 2), Decimal("0.5"), np.float32(0.5)]
+    assert all(run(half)["x"] == run(0.5)["x"] for half in halves) and np.all(run(halves)["x"] == run(0.5)["x"])
     assert np.array_equal(run("0.5")["x"], run(0.5)["x"])
-    for what, hint in (("x", r"hint: run\['x'\] is the column of that name"), (["x", "y"], r"hint: run\(1.5\)"), ({"t": 1}, r"hint: run\(1.5\)"), (1j, r"hint: run\(1.5\)")):
+    others = (["x", "y"], {"t": 1}, 1j, None, [None, 1], b"1", np.array([1, None], dtype=object))
+    for what, hint in (("x", r"hint: run\['x'\] is the column of that name"), *((other, r"hint: run\(1.5\)") for other in others)):
         with pytest.raises(an.ModelError, match=r"run\(t\) takes times in seconds, one number or an array, not .*\n" + hint):
             run(what)  # type: ignore[arg-type]
+
+
+def test_names_that_a_run_at_times_does_not_have(disc: an.Model) -> None:
+    run = disc.simulate(to=1)
+    column = next(name for name in run if name.startswith("lambda."))
+    for order, name, hint in (
+        (0, "theta'", "hint: run(t, order=1)['theta']"),
+        (0, "θ′", "hint: run(t, order=1)['theta']"),
+        (1, "theta''", "hint: run(t, order=3)['theta']"),
+        (0, column, f"hint: run[{column!r}] is a column over the rows; simulate(at=[…]) has rows at any times"),
+    ):
+        with pytest.raises(KeyError) as told:
+            run(0.3, order=order)[name]
+        assert str(told.value) == f"there is no {name!r} here\nthe names are x, y, psi, theta, phi\n{hint}"
+    with pytest.raises(KeyError, match="there is no 'w' here\nthe names are x, y, psi, theta, phi$"):
+        run(0.3)["w"]
+    with pytest.raises(KeyError, match="hint: run"):
+        pickle.loads(pickle.dumps(run(0.3)))["theta'"]
+    assert "theta'" not in run(0.3) and run(0.3).get("theta'") is None and run(0.3)["θ"] == run(0.3)["theta"]
 
 
 def test_a_derivative_that_the_polynomials_do_not_have_is_refused(disc: an.Model) -> None:

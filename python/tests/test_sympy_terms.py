@@ -464,6 +464,47 @@ def test_acceleration_constraints_that_say_something_else_are_told(more: int) ->
     assert [("acceleration constraints are not the rates" in str(w.message), w.filename.endswith("test_sympy_terms.py")) for w in told] == [(True, True)] * more
 
 
+def _bead_with_friction(load: Callable[..., Any], height: Any = 0) -> tuple[Any, Any, dict[Any, Any]]:
+    """Makes a bead on a wire of this height over the coordinate q, with an auxiliary speed for the force F2 of the wire along y."""
+    q, u, aux, F2 = me.dynamicsymbols("q u u_a F2")
+    m, g, k, c = sm.symbols("m g k c")
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    y = sm.sympify(height).subs(sm.Symbol("q"), q)
+    P = O.locatenew("P", q * N.x + y * N.y)
+    P.set_vel(N, u * N.x + (y.diff(q) * u + aux) * N.y)
+    method = me.KanesMethod(N, [q], [u], kd_eqs=[q.diff(t) - u], u_auxiliary=[aux])
+    method.kanes_equations([me.Particle("P", P, m)], [(P, -k * q * N.x - m * g * N.y + load(F2, c, u, N))])
+    return method, F2, {m: 1, k: 3, c: 0.1, g: 9.81}
+
+
+def test_a_force_of_an_auxiliary_speed_in_another_load_is_solved_for() -> None:
+    """Coulomb friction of a bead on a level wire: the bead swings about k q = c m g."""
+    method, _, values = _bead_with_friction(lambda F2, c, u, N: -c * sm.Abs(F2) * sm.sign(u) * N.x + F2 * N.y)
+    model = an.from_sympy(method, values=values, initial={"q": 1})
+    assert "F2" not in model.text
+    middle = 0.1 * 9.81 / 3
+    assert model.simulate(to=1, at=[1])["q"][0] == pytest.approx(middle + (1 - middle) * math.cos(math.sqrt(3)), rel=1e-12)
+
+
+def test_a_solved_force_may_depend_on_accelerations() -> None:
+    """On a bent wire F2 = m (y'' + g), where y'' holds q''; the drag -c F2 along x is then linear in q''."""
+    method, _, values = _bead_with_friction(lambda F2, c, u, N: -c * F2 * N.x + F2 * N.y, "q**2/2")
+    model = an.from_sympy(method, values=values, initial={"q": 0.5, "u": 0.2})
+    q, v, c = 0.5, 0.2, 0.1
+    # m (q'' + y' y'') = -k q - m g y' + F2 (y' - c), with y' = q, y'' = q q'' + v^2 and F2 = m (y'' + g).
+    expected = (-3 * q - 9.81 * q + (v**2 + 9.81) * (q - c) - q * v**2) / (1 + q * q - q * (q - c))
+    assert model.evaluate().accelerations["q''"] == pytest.approx(expected, rel=1e-13)
+
+
+def test_a_force_of_an_auxiliary_speed_that_is_not_solved_for() -> None:
+    method, F2, values = _bead_with_friction(lambda F2, c, u, N: -c * F2 * N.x + F2**3 * N.y)
+    with pytest.raises(an.ModelError, match="F2 is a force along the auxiliary speed u_a, another load depends on it, and .*\nhint: replace F2 in the loads"):
+        an.from_sympy(method, values=values)
+    for key in (F2, "F2"):
+        assert 'F2 = "2*t"' in an.from_sympy(method, values={**values, key: "2*t"}).text
+
+
 def test_the_force_of_an_auxiliary_speed_needs_no_value() -> None:
     """The tension of a pendulum does no work and cancels in the generalized force."""
     q, u, aux, tension = me.dynamicsymbols("q u u_a T")

@@ -24,6 +24,8 @@ struct Model::Data {
 
   // Throws Failure if `what` needs a mode of the contacts and none is chosen.
   void without_contacts(const std::string& what) const;
+  // Tells in the hint of an inconsistent start that a state of the chosen mode is needed, if one is chosen.
+  void hint_at_state(inner::Outcome& start, const inner::StateChoice& choice) const;
   // Reads the text again, in the chosen mode. Returns nullopt if the diagnostics have errors. Throws Failure.
   std::optional<inner::OpenModel> open_again(inner::Diagnostics& diagnostics) const;
   // Returns a copy with an expression graph of its own, in which the owner of the copy may build expressions.

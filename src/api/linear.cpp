@@ -79,11 +79,18 @@ inner::LinearRequest request_of(const Model& model, const LinearOptions& options
   return request;
 }
 
-Result<LinearModel> linear_model(const std::shared_ptr<const inner::Model>& model,
-                                 const inner::LinearRequest& request) {
-  const inner::LinearStudy study(model, request);
+// REQUIRES: as LinearStudy::compute().
+inner::Linearization linearization(const inner::LinearStudy& study, const Model::Data& of,
+                                   const inner::LinearRequest& request) {
+  inner::Linearization l = study.compute();
+  for (inner::LinearResult& r : l.results) of.hint_at_state(r.outcome, request.choice);
+  return l;
+}
+
+Result<LinearModel> linear_model(const Model::Data& of, const inner::LinearRequest& request) {
+  const inner::LinearStudy study(of.own_copy(), request);
   const inner::PrecisionScope precision(study.working_digits());
-  const inner::Linearization l = study.compute();
+  const inner::Linearization l = linearization(study, of, request);
   const inner::LinearResult& r = l.results.at(0);
   if (!r.outcome.ok()) return error_of(r.outcome);
   return model_of(r.model, request.digits);
@@ -92,8 +99,7 @@ Result<LinearModel> linear_model(const std::shared_ptr<const inner::Model>& mode
 }  // namespace
 
 Result<LinearModel> linearize(const Model& model, const LinearOptions& options) {
-  return guarded(model.data().source,
-                 [&] { return linear_model(model.data().own_copy(), request_of(model, options)); });
+  return guarded(model.data().source, [&] { return linear_model(model.data(), request_of(model, options)); });
 }
 
 Result<LinearModel> linearize(const System& system) {
@@ -103,7 +109,7 @@ Result<LinearModel> linearize(const System& system) {
     inner::LinearRequest request;
     request.form = of.scenario.system.form;
     request.choice = of.choice;
-    return linear_model(of.model->own_copy(), request);
+    return linear_model(*of.model, request);
   });
 }
 
@@ -124,7 +130,7 @@ Result<Stability> stability(const Model& model, const std::string& parameter, co
     request.range = std::move(range);
     const inner::LinearStudy study(model.data().own_copy(), request);
     const inner::PrecisionScope precision(study.working_digits());
-    const inner::Linearization l = study.compute();
+    const inner::Linearization l = linearization(study, model.data(), request);
     Stability out;
     out.parameter = parameter;
     for (std::size_t k = 0; k < l.results.size(); ++k) {

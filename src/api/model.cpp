@@ -40,6 +40,10 @@ void Model::Data::without_contacts(const std::string& what) const {
   if (!contacts.empty()) throw inner::needs_mode(what, *model, contacts, "the mode ");
 }
 
+void Model::Data::hint_at_state(inner::Outcome& start, const inner::StateChoice& choice) const {
+  if (!mode.empty()) inner::hint_at_state_of_mode(start, *model, choice.overrides, "initial={…}");
+}
+
 std::optional<inner::OpenModel> Model::Data::open_again(inner::Diagnostics& diagnostics) const {
   std::optional<inner::OpenModel> open = inner::open_model(source, diagnostics, overrides, cases);
   if (!open || mode.empty()) return open;

@@ -17,6 +17,7 @@ std::shared_ptr<const System::Data> system_of(const Model& model, const PrepareO
   std::string form = options.form;
   if (form == "auto") form = inner::choose_form(model.data().model, data->choice).form->name;
   start = make_system(model.data().model, form, data->choice, data->scenario);
+  model.data().hint_at_state(start, data->choice);
   if (start.ok())
     for (std::string& text : inner::notes_of_redundancy(data->scenario))
       data->scenario.state.notes.push_back(std::move(text));

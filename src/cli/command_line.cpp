@@ -157,7 +157,7 @@ int CommandLine::run(int argc, char** argv) {
     return run(static_cast<int>(asked.size()), asked.data());
   }
   if (argc > 1) check_command(argv[1], known);
-  typed_ = command_line(argc, argv);
+  typed_ = command_line(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
   try {
     app_.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -26,4 +26,8 @@ Reader in_mode(Reader in, const SystemCommand& o, const std::string& command) {
   return in;
 }
 
+void hint_at_state_of_mode(Outcome& start, const SystemCommand& o, const Model& model, const StateChoice& choice) {
+  if (!o.mode.empty()) anholon::hint_at_state_of_mode(start, model, choice.overrides, "--q and --qdot");
+}
+
 }  // namespace anholon::cli

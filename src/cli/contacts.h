@@ -13,4 +13,7 @@ void without_contacts(const Reader& in, const std::string& command);
 // model has contacts.
 Reader in_mode(Reader in, const SystemCommand& o, const std::string& command);
 
+// Tells in the hint of an inconsistent start that a state of the mode of --mode is needed, if that mode was chosen.
+void hint_at_state_of_mode(Outcome& start, const SystemCommand& o, const Model& model, const StateChoice& choice);
+
 }  // namespace anholon::cli

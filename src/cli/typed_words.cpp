@@ -42,10 +42,9 @@ bool is_topic(const std::string& word, const std::vector<std::string>& commands)
       "forces, …, and formulas\n"};
 }
 
-std::string command_line(int argc, char** argv) {
+std::string command_line(const std::vector<std::string>& words) {
   std::string line = "anholon";
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
+  for (const std::string& word : words) {
     const bool plain =
         !word.empty() &&
         word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-") ==

@@ -15,7 +15,7 @@ bool is_topic(const std::string& word, const std::vector<std::string>& commands)
 // parser puts the model into the list of --q.
 void rescue_model(SystemCommand& o);
 
-// Returns the words in a form that can be typed again in a shell.
-std::string command_line(int argc, char** argv);
+// Returns "anholon" and the words after it in a form that can be typed again in a shell.
+std::string command_line(const std::vector<std::string>& words);
 
 }  // namespace anholon::cli

@@ -41,8 +41,10 @@ class CasadiFile {
       "double t, const double *x, const double *lead, const double *u, const double *p";
 
   std::string head() const {
-    std::string out = "/*\n * " + comment_line(f_.title.empty() ? "A motion" : f_.title) +
-                      "\n * Written by: " + comment_line(made_by_) + "\n *\n * Numbers are double, in SI units.\n";
+    std::string out =
+        "/*\n * " + comment_line(f_.title.empty() ? "A motion" : f_.title) +
+        "\n * Written by: " + comment_line(made_by_) +
+        "\n *\n * Numbers are double, in SI units; an output that has a unit in the file is in that unit.\n";
     const auto list = [&](const char* name, const std::vector<std::string>& of,
                           const std::vector<std::string>& meanings) {
       out += std::string(" * ") + name + ":";

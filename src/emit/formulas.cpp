@@ -29,9 +29,10 @@ class FormulaModule {
 
   std::string text() {
     std::string out = "\"\"\"" + code_string(f_.title.empty() ? "A motion" : f_.title) + "\n" + R"(
-The rates x' = f(t, x, u, p) and outputs y, in SI units. `np` is the library for arrays: numpy, jax.numpy, …; each function
-returns a list with a number or an array for each row. Where LEAD is not empty, solve matrix lead = right of equations()
-for lead first; where LINEAR is false, equations() takes lead, too, and the solution is Newton's correction of it.
+The rates x' = f(t, x, u, p) and outputs y, in SI units; an output that has a unit in the file is in that unit.
+`np` is the library for arrays: numpy, jax.numpy, …; each function returns a list with a number or an array for each
+row. Where LEAD is not empty, solve matrix lead = right of equations() for lead first; where LINEAR is false,
+equations() takes lead, too, and the solution is Newton's correction of it.
 """
 
 )" + tuple("STATES", f_.x.names) +

@@ -206,7 +206,7 @@ std::vector<std::string> head(const System& s, const Structure& structure, const
   add(std::string(s.form->title) + ", " + s.form->equation + " of " + s.form->source);
   if (!o.made_by.empty()) add("Written by: " + o.made_by);
   add("");
-  add("Numbers are double, in the units of the model. x' is dx/dt.");
+  add("Numbers are double, in SI units; an output that has a unit in the file is in that unit. x' is dx/dt.");
   add("");
   add("t: the time");
   add("state" + count(m.state.size()) + ": what the integrator of ordinary differential equations carries");

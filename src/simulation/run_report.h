@@ -47,7 +47,7 @@ class RunReport {
     fill_course();
     fill_watched();
     if (of_.floors) fill_floors();
-    warn(warnings<N>(of_.s, of_.course, of_.watch, of_.angles));
+    warn(warnings<N>(of_.s, of_.course, of_.watch, of_.angles, r.outcome));
     const bool set =
         std::any_of(r.events.begin(), r.events.end(), [](const EventReport& e) { return !e.changes.empty(); });
     warn(warnings_of_jumps<N>(of_.course, of_.watch, of_.options, set));

@@ -128,15 +128,26 @@ std::vector<Warning> warnings_of_jumps(const Course<N>& course, const Watch<Wide
   return list;
 }
 
+// True if a singular configuration ends the motion and is the one at which the equations are the least regular. The
+// message of the outcome tells of it then, and nothing follows it. The steps become ever shorter on the way to it.
+template <Number N>
+bool ends_where_least_regular(const Course<N>& course, const Outcome& outcome) {
+  using W = Wider<N>;
+  constexpr int kRecentSteps = 8;  // as in motion/stop.cpp
+  const W recent = abs(W(course.time() - course.before())) * W(kRecentSteps);
+  return outcome.kind == OutcomeKind::singular && abs(W(course.smallest_sigma_time() - course.time())) <= recent;
+}
+
 // Warns if a motion passes near a singular configuration, if outputs that were declared conserved are not, and if
 // angles come near their singularity.
 template <Number N>
 std::vector<Warning> warnings(const Workspace& s, const Course<N>& course, const Watch<Wider<N>>& watch,
-                              const AngleWatch& angles) {
+                              const AngleWatch& angles, const Outcome& outcome) {
   constexpr double kNearSingular = 1e-3;
   const Model& model = *s.model;
   std::vector<Warning> list;
-  if (course.smallest_sigma() < course.first_sigma() * N(kNearSingular)) {
+  if (course.smallest_sigma() < course.first_sigma() * N(kNearSingular) &&
+      !ends_where_least_regular<N>(course, outcome)) {
     const std::size_t j = course.weakest_unknown(), n = s.system.coordinates;
     const bool is_multiplier = n <= j && j < s.system.mechanical();
     const unsigned order = is_multiplier ? 0 : static_cast<unsigned>(course.taylor().program().d[j]);

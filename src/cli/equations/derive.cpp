@@ -5,9 +5,11 @@
 
 #include "cli/contacts.h"
 #include "cli/input.h"
+#include "cli/model_options.h"
 #include "cli/models/show.h"
 #include "cli/outputs.h"
 #include "cli/say.h"
+#include "cli/typed_words.h"
 #include "contact/mode/switched_model.h"
 #include "dynamics/rate_formulas_of.h"
 #include "report/equations.h"
@@ -43,6 +45,19 @@ Elimination pivots_of(const Reader& in, const Mechanics& m, const StateChoice& c
   }
 }
 
+// Returns the command that writes the program, without the file to which it goes.
+std::string made_by(const DeriveCommand& o) {
+  std::vector<std::string> words = {"derive", o.model, "--format", o.format};
+  if (o.motion.form) words.insert(words.end(), {"--form", *o.motion.form});
+  const auto add = [&](const char* name, const std::vector<std::string>& list) {
+    for (const std::string& word : list) words.insert(words.end(), {"--" + std::string(name), word});
+  };
+  if (!o.t.empty()) add("t", {o.t});
+  for (const ModelOption& option : model_options()) add(option.name, o.*option.words);
+  add("mode", o.mode);
+  return command_line(words);
+}
+
 // Writes the motion as a program in C or Python.
 int write_program(const DeriveCommand& o, const Reader& in, const Formulation& f) {
   if (o.json)
@@ -53,20 +68,18 @@ int write_program(const DeriveCommand& o, const Reader& in, const Formulation& f
   }
   Scenario s;
   const StateChoice choice = state_choice(o, *in.model);
-  const Outcome outcome = ready(in, f, choice, s);
+  Outcome outcome = ready(in, f, choice, s);
   if (!outcome.ok()) {
+    hint_at_state_of_mode(outcome, o, *in.model, choice);
     print_outcome(outcome);
     return kStopped;
   }
-  std::string made_by =
-      "anholon derive " + o.model + " --format " + o.format + (o.motion.form ? " --form " + *o.motion.form : "");
-  for (const std::string& set : o.set) made_by += " --set " + set;
   try {
     const bool python = o.format == "python";
     const std::vector<std::size_t> switching = switching_parameters(*in.model, contacts(*in.names));
     const auto rates = python ? independent_rates(s, choice, switching) : std::nullopt;
     deliver(o, program_text(s, choice, python ? ProgramLanguage::python : ProgramLanguage::c,
-                            std::filesystem::path(o.model).stem().string(), made_by,
+                            std::filesystem::path(o.model).stem().string(), made_by(o),
                             {rates ? &*rates : nullptr, switching}));
   } catch (const Failure& failure) {
     print_diagnostic(failure.diagnostic, in.source);
@@ -109,7 +122,9 @@ int derive(const DeriveCommand& asked) {
                      "' are not those of ideal reactions\nhint: name another form, or none for Routh's equations\n"};
   if (!o.show.empty()) {
     Scenario s;
-    const Outcome outcome = ready(in, *wanted[0], state_choice(o, model), s);
+    const StateChoice choice = state_choice(o, model);
+    Outcome outcome = ready(in, *wanted[0], choice, s);
+    hint_at_state_of_mode(outcome, o, model, choice);
     return show(o, s, outcome);
   }
   if (!o.output.empty() && o.output != "-")

@@ -7,10 +7,12 @@ namespace anholon::cli {
 void add_derive(CommandLine& line) {
   const auto [c, o] =
       line.model_command("derive", "print the equations of motion", cli::derive,
+                         "The initial state is the start of programs; at it the coordinates are chosen that forms "
+                         "without multipliers eliminate.\n"
                          "Examples: anholon derive disc --format latex\n"
                          "          anholon derive luo-zhao-example-2 --reactions\n"
                          "          anholon derive chaplygin-sleigh --form nielsen-reduced --m 3 --steps");
-  parameters(c, o), form_option(c, o), mode_of_contacts(c, o);
+  parameters(c, o), state(c, o), form_option(c, o), mode_of_contacts(c, o);
   c->add_option("--format", o.format,
                 "text, latex, mathml or json; c (C99) or python (NumPy): a program that computes the motion's right "
                 "side\n(default: by the end of FILE, else text)")

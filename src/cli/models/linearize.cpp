@@ -356,7 +356,8 @@ int linearize(const LinearizeCommand& o) {
   if (!o.show.empty()) return show(o, s);
   const std::optional<ParameterRange>& values = request.range;
   const PrecisionScope scope(study.working_digits());
-  const Linearization l = study.compute();
+  Linearization l = study.compute();
+  for (LinearResult& r : l.results) hint_at_state_of_mode(r.outcome, o, *in.model, request.choice);
   Outcome failed;  // the first outcome that failed
   for (const LinearResult& r : l.results)
     if (failed.ok()) failed = r.outcome;

@@ -106,4 +106,15 @@ Failure needs_mode(const std::string& command, const Model& model, const std::ve
                  option + names_of_modes(model).at(0) + "=0, or another number");
 }
 
+void hint_at_state_of_mode(Outcome& start, const Model& model, const std::vector<StateOverride>& given,
+                           const std::string& options) {
+  const std::vector<GivenValue>& of_file = model.initial.given;
+  const bool takes_part =
+      !model.initial.conditions.empty() || std::any_of(of_file.begin(), of_file.end(), [&](const GivenValue& v) {
+        return !overridden(given, model.graph->node(v.symbol.id));
+      });
+  if (start.kind == OutcomeKind::inconsistent && takes_part)
+    start.hint = "the file may start in another mode: give a state of the chosen one with " + options;
+}
+
 }  // namespace anholon

@@ -36,15 +36,36 @@ std::optional<Reduction::Kind> kind_of(const std::string& word) {
   return std::nullopt;
 }
 
+// Returns the hint for the column NAME.WHAT of a contact that stays in the mode of the model: the multipliers that are
+// its forces, by `kind`, such as "max".
+std::string instead_of_column(const std::string& kind, const std::string& what, const Contact& contact,
+                              const Model& model) {
+  const std::vector<std::string>& known = model.names.multipliers;
+  const auto has = [&](const std::string& name) { return std::find(known.begin(), known.end(), name) != known.end(); };
+  const std::string lambda = "lambda." + contact.name;
+  if (what == "mode") return "the contact keeps its mode";
+  if (what == "gap")
+    return has(contact.name) ? "the contact is closed, and its gap is 0"
+                             : "write the gap with points and coordinates, as P.z - R";
+  if (what == "normal")
+    return has(contact.name) ? kind + "(" + lambda + ")" : "the contact is open, and its force is 0";
+  if (has(contact.name + ".t2")) return kind + "(sqrt(" + lambda + ".t1^2 + " + lambda + ".t2^2))";
+  if (has(contact.name + ".t1"))
+    return kind + "(" + lambda + ".t1), or " + kind + "(abs(" + lambda + ".t1)) without its sign";
+  return "it is 0 in a contact that does not stick in this mode";
+}
+
 // Throws MistakeInWord if the text has the form NAME.mode, or names another column of these contacts.
-void must_be_no_column(const std::string& word, std::size_t at, const std::string& text,
-                       const std::vector<Contact>& contacts) {
-  for (const Contact& c : contacts) {
+void must_be_no_column(const std::string& word, std::size_t at, const std::string& text, const OpenModel& model,
+                       const std::vector<Contact>& moving) {
+  for (const Contact& c : contacts(*model.names)) {
     const std::vector<std::string> columns = contact_columns({c}), events = contact_events({c});
-    if (std::find(columns.begin(), columns.end(), text) != columns.end() && !events.empty())
-      mistake_in(word, at, text.size(), "'" + text + "' is a column of a contact, no formula",
-                 "rows at times have it: --at 1,2 --columns t," + text + "; events: count(" + events[0] + "), first(" +
-                     events[0] + ")");
+    if (std::find(columns.begin(), columns.end(), text) == columns.end() || events.empty()) continue;
+    mistake_in(word, at, text.size(), "'" + text + "' is a column of a contact, no formula",
+               moving.empty()
+                   ? instead_of_column(word.substr(0, word.find('(')), text.substr(c.name.size() + 1), c, *model.model)
+                   : "rows at times have it: --at 1,2 --columns t," + text + "; events: count(" + events[0] +
+                         "), first(" + events[0] + ")");
   }
 }
 
@@ -81,7 +102,7 @@ Expr formula_of(const std::string& word, std::size_t at, const std::string& text
   } catch (const Failure& f) {
     const auto of_force = [&](const Contact& c) { return text.find("lambda." + c.name) != std::string::npos; };
     if (std::any_of(moving.begin(), moving.end(), of_force)) refuse_force(word, at, text, moving);
-    must_be_no_column(word, at, text, contacts(*model.names));
+    must_be_no_column(word, at, text, model, moving);
     throw MistakeInWord{f.diagnostic, word};
   }
   if (const Expr* e = std::get_if<Expr>(&value)) return put_masses(*model.model, *e);
