@@ -516,13 +516,14 @@ class Dynamics:
         return ByName({n: v for names, values in zip(self._names(), parts, strict=True) for n, v in zip(names, values, strict=True)})
 
     def _names(self) -> tuple[list[str], list[str], list[str]]:
-        """Returns the names of the coordinates, of the velocities with higher derivatives, and of the model's states."""
-        states = list(self.model.states)
+        """Returns the names of the coordinates, of the velocities with higher derivatives, and of the model's states, of which
+        x may hold rates."""
         if self.minimal:
             coordinates = [c.name for c in self.model.coordinates]
-            return coordinates, [name + "'" for name in coordinates], states
-        mechanical = self._state_names()[: self._count - len(states)]
-        return [n for n in mechanical if not n.endswith("'")], [n for n in mechanical if n.endswith("'")], states
+            return coordinates, [name + "'" for name in coordinates], list(self.model.states)
+        of_states = [n for n in self._state_names() if n.rstrip("'") in self.model.states]
+        mechanical = self._state_names()[: self._count - len(of_states)]
+        return [n for n in mechanical if not n.endswith("'")], [n for n in mechanical if n.endswith("'")], of_states
 
     def __repr__(self) -> str:
         return f"<f(t, x) of {self.model.title!r}: x = {', '.join(s.name for s in self.states)}>"

@@ -80,12 +80,12 @@ class GapRows {
     Column es;
     const auto add = [&](const Column& row) { es.insert(es.end(), row.begin(), row.end()); };
     for (const std::size_t r : constraints_) {
-      const Expr phi = put_masses(*s_.model, m.phi[r]);
+      const Expr phi = put_state_rates(*s_.model, put_masses(*s_.model, m.phi[r]), 1);
       add(gradient(phi, m.order[r] == 0 ? m.q : m.qd));
       es.push_back(phi);
       es.push_back(m.order[r] == 0 ? rate(phi) : phi);
     }
-    const Expr gap = s_.graph().own(contact.gap);
+    const Expr gap = put_state_rates(*s_.model, s_.graph().own(contact.gap), 1);
     add(gradient(gap, m.q));
     es.push_back(rate(gap));
     return es;

@@ -125,6 +125,7 @@ void Dynamics::put_independent_velocities(const System& s, const Representation&
   for (std::size_t i = 0; i < velocities; ++i)
     states_.push_back({automatic_name(*s.model, "u" + std::to_string(i + 1)), mapped.velocities[i]});
   for (std::size_t z = s.mechanical(); z < s.size(); ++z) states_.push_back({s.variable_names[z], {}});
+  state_entries_ = model_states_;
   for (std::size_t j = 0; j < mapped.plan->plan().x.size(); ++j)
     unknowns_.push_back({{j < n ? j : j < n + model_states_ ? velocities + j : j - model_states_}});
   std::vector<double> q, qd;
@@ -149,8 +150,10 @@ void Dynamics::put_state_of_motion(const System& s, const std::vector<int>& d) {
       if (k < d[j]) add(j, k);
     if (k == 0) values_ = states_.size();
   }
+  const std::size_t mechanical = states_.size();
   for (std::size_t j = s.mechanical(); j < s.size(); ++j)
     for (int k = 0; k < d[j]; ++k) add(j, k);
+  state_entries_ = states_.size() - mechanical;
 }
 
 // A parameter follows from others if its value contains symbols; the inputs are the last parameters. The components of
@@ -375,7 +378,7 @@ std::vector<double> Dynamics::from_motion(double t, const std::vector<double>& q
 }
 
 Dynamics::Full Dynamics::to_motion(double t, const std::vector<double>& x, std::span<const double> p) const {
-  const auto n = static_cast<std::ptrdiff_t>(values_), states = static_cast<std::ptrdiff_t>(model_states_);
+  const auto n = static_cast<std::ptrdiff_t>(values_), states = static_cast<std::ptrdiff_t>(state_entries_);
   Full full{{x.begin(), x.begin() + n}, {x.begin() + n, x.end() - states}, {x.end() - states, x.end()}};
   if (!map_) return full;
   std::vector<long double> own(full.q.begin(), full.q.end()), state;

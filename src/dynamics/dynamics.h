@@ -123,7 +123,8 @@ class Dynamics {
   void with_kernel(int lanes, const Call& call, const F& f) const;
 
   std::size_t coordinates_ = 0, model_states_ = 0, inputs_ = 0;
-  std::size_t values_ = 0;  // the number of states that are coordinates or multipliers themselves
+  std::size_t state_entries_ = 0;  // of the model's states: with their rates, where a constraint needs them
+  std::size_t values_ = 0;         // the number of states that are coordinates or multipliers themselves
   std::shared_ptr<const Program> program_;
   std::shared_ptr<const StateMap> map_;
   std::shared_ptr<const KernelPlan> plan_;  // nullptr if the reference computes

@@ -121,8 +121,8 @@ class Search {
          InitialState<N> state, const MayBeTaken<N>& wanted)
       : m_(m), s_(s), parameters_(parameters), wanted_(wanted), n_(s.coordinates), equations_(leading_equations(s, t)),
         unknowns_(leading_unknowns(s, t)), all_(m, equations_, unknowns_, 0, parameters), metric_(orders(s, t)),
-        constraints_(m, part(equations_, n_, equations_.size()), part(unknowns_, 0, n_), metric_, parameters),
-        motion_(m, part(equations_, 0, n_), part(unknowns_, n_, unknowns_.size()), 0, parameters),
+        constraints_(m, part(equations_, n_, s.mechanical()), part(unknowns_, 0, n_), metric_, parameters),
+        motion_(m, part(equations_, 0, n_), part(unknowns_, n_, s.mechanical()), 0, parameters),
         state_(std::move(state)) {
     if (constraints_may_branch(m, s)) return;
     for (const Expr& x : nonlinear_in_forces(m, t.d)) nonlinear_.push_back(m.graph().node(x.id).index);

@@ -19,6 +19,7 @@ Outcome StateSolver<N>::complete(const System& s, const Structure& t) {
     if (Outcome o = stage(s, t, level); !o.ok()) return o;
   if (Outcome o = given_beyond_the_state(s, t, late); !o.ok()) return o;
   if (Outcome o = leading(s, t); !o.ok()) return o;
+  put_rates_of_state(s, t);
   for (int k = 1; k <= beyond; ++k)
     if (Outcome o = derivatives_of_leading(s, t, k); !o.ok()) return o;
   if (!late.empty())
@@ -88,13 +89,12 @@ Outcome StateSolver<N>::stage(const System& s, const Structure& t, int level) {
   for (std::size_t i = 0; i < s.size(); ++i) {
     const int k = t.c[i] - level;
     if (k < 0) continue;
-    const Expr e = total_derivative(s.equations[i], static_cast<unsigned>(k));
+    const Expr e = put_state_rates(model_, total_derivative(s.equations[i], static_cast<unsigned>(k)), 1);
     if (!holds_higher(e)) continue;  // concerns positions and velocities only
     if (i < s.coordinates)
       laws.push_back({e, "the equation of motion of '" + s.equation_names[i] + "'", {}});
     else if (i < s.mechanical())
-      laws.push_back({put_state_rates(model_, e, 2),
-                      (k ? "a derivative of constraint '" : "constraint '") + s.equation_names[i] + "'",
+      laws.push_back({e, (k ? "a derivative of constraint '" : "constraint '") + s.equation_names[i] + "'",
                       model_.constraints[s.constraints[i - s.coordinates]].span});
   }
   StageEquations equations = laws;
@@ -124,7 +124,7 @@ bool StateSolver<N>::add_velocities(const System& s, const Structure& t, int lev
   for (std::size_t i = s.coordinates; i < s.mechanical(); ++i) {
     const int k = t.c[i] - level;
     if (k < 0) continue;
-    const Expr e = put_state_rates(model_, total_derivative(s.equations[i], static_cast<unsigned>(k)), 2);
+    const Expr e = put_state_rates(model_, total_derivative(s.equations[i], static_cast<unsigned>(k)), 1);
     if (!holds_higher(e))
       equations.push_back({e, "a derivative of constraint '" + s.equation_names[i] + "'",
                            model_.constraints[s.constraints[i - s.coordinates]].span});
@@ -207,6 +207,21 @@ Outcome StateSolver<N>::leading(const System& s, const Structure& t) {
                            " is taken, there is also " + others + "; name one by [initial] " +
                            (branches ? "branch = {…} or guess = {…}" : "guess = {…}"));
   return {};
+}
+
+// Sets the rates that belong to the state of the motion and hold accelerations or multipliers.
+template <Number N>
+void StateSolver<N>::put_rates_of_state(const System& s, const Structure& t) {
+  Column rates;
+  bool any = false;
+  for (std::size_t i = 0; i < model_.states.size(); ++i) {
+    rates.push_back(put_state_rates(model_, put_masses(model_, model_.states[i].rate), 1));
+    any = any || (leads_beyond_rate(s, t, s.mechanical() + i) && holds_higher(rates.back()));
+  }
+  if (!any) return;
+  const Tape tape = compile(rates);
+  Machine<N> machine(tape, 0, p_.parameters);
+  put_rates(machine);
 }
 
 // Computes the derivatives of this order of the leading ones.

@@ -25,7 +25,12 @@ Outcome StateSolver<N>::positions_and_velocities() {
   if (Outcome o = solve(plan.velocities); !o.ok()) {
     if (!before || !move_positions(plan, *before)) return o;
   }
-  if (plan.state_rates) put_rates(*plan.state_rates);
+  if (Machine<N>* rates = memory_ ? memory_->rates() : nullptr) {
+    put_rates(*rates);
+  } else if (plan.state_rates) {
+    Machine<N> once(*plan.state_rates, 0, p_.parameters);
+    put_rates(once);
+  }
   say_least_change();
   say_replaced();
   return {};
@@ -60,8 +65,7 @@ void StateSolver<N>::states() {
 
 // Sets the rates of the model's states at this state.
 template <Number N>
-void StateSolver<N>::put_rates(const Tape& rates) {
-  Machine<N> machine(rates, 0, p_.parameters);
+void StateSolver<N>::put_rates(Machine<N>& machine) {
   bind(machine, m_.graph(), [&](const Node& n, NodeId) {
     const N* known = state_.value(n);
     return n.kind == Kind::time ? state_.t : known ? *known : N(0);
@@ -352,6 +356,7 @@ Outcome consistent_state(const InitialProblem<N>& problem, StartMemory<N>& memor
 
 #define INSTANTIATE(N)                                                                                                 \
   template void StateSolver<N>::start_values(const std::function<bool(const Node&)>&);                                 \
+  template void StateSolver<N>::put_rates(Machine<N>&);                                                                \
   template Outcome StateSolver<N>::solve(const StageEquations&, const Column&, unsigned);                              \
   template void StateSolver<N>::say_replaced();
 INSTANTIATE(double)

@@ -21,7 +21,8 @@ bool overridden(const std::vector<StateOverride>& overrides, const Node& n) {
 StageEquations conditions_of(const Model& model) {
   StageEquations list;
   for (const Condition& c : model.initial.conditions)
-    list.push_back({put_masses(model, c.residual), "condition \"" + c.text + "\"", c.span, true});
+    list.push_back(
+        {put_state_rates(model, put_masses(model, c.residual), 1), "condition \"" + c.text + "\"", c.span, true});
   return list;
 }
 
@@ -39,15 +40,10 @@ StartPlan::Stages planned(const Mechanics& m, const StageEquations& equations, c
 }
 
 static std::optional<Tape> rates_of_states(const Model& model) {
-  const auto holds_state = [&](const Constraint& c) {
-    const std::vector<NodeId> ids = symbols({&c.phi, 1});
-    return c.order == 0 &&
-           std::any_of(ids.begin(), ids.end(), [&](NodeId id) { return model.graph->node(id).kind == Kind::state; });
-  };
-  if (std::none_of(model.constraints.begin(), model.constraints.end(), holds_state)) return std::nullopt;
+  if (model.states.empty()) return std::nullopt;
   Column es;
   for (const StateVariable& z : model.states) {
-    const Expr rate = put_masses(model, z.rate);
+    const Expr rate = put_state_rates(model, put_masses(model, z.rate), 1);
     es.push_back(holds_higher(rate) ? model.graph->zero() : rate);
   }
   return compile(es);
@@ -59,7 +55,8 @@ StartPlan::StartPlan(const Mechanics& m, const std::vector<Column>* mass)
   std::vector<StageEquation> of_positions, of_velocities;
   for (const Constraint& c : model.constraints) {
     if (c.order > 1) continue;
-    const Expr phi = put_masses(model, c.phi);
+    const Expr phi = put_state_rates(model, put_masses(model, c.phi), 1);
+    if (holds_higher(phi)) continue;
     const std::string what = "constraint '" + c.name + "'";
     if (c.order == 0) {
       of_positions.push_back({phi, what, c.span});

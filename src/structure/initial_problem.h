@@ -30,8 +30,8 @@ struct StartPlan {
   // The stage of positions and velocities together, if there are conditions on velocities: positions may have to move
   // if no velocities fit.
   Stages both;
-  // The rates of the model's states, if a constraint of positions holds a state: its rate then belongs to the state of
-  // the motion. A rate that holds more than the state is a zero here; it follows from the equations.
+  // The rates of the model's states, if there are any: some belong to the state of the motion. A rate that holds more than
+  // positions, velocities and states is a zero here; it follows from the equations.
   std::optional<Tape> state_rates;
 
   // Returns the same plan with stages of its own. The handles still refer to the old graph.

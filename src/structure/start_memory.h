@@ -25,11 +25,13 @@ class StartMemory {
   StartMemory(const Mechanics& m, const StartPlan& plan, const std::vector<N>& parameters)
       : values_(plan.values, 0, parameters) {
     values_.evaluate();
+    if (plan.state_rates) rates_.emplace(*plan.state_rates, 0, parameters);
     for (const StartPlan::Stages& s : {plan.positions, plan.velocities, plan.both})
       if (s) stages_.push_back({s.get(), std::make_unique<Stage<N>>(m, s, parameters)});
   }
 
   const Machine<N>& values() const { return values_; }
+  Machine<N>* rates() { return rates_ ? &*rates_ : nullptr; }
   StartNotes<N>& notes() { return notes_; }
   // Returns nullptr if the stage does not belong to the plan.
   Stage<N>* stage(const StartPlan::Stages& of) {
@@ -47,6 +49,7 @@ class StartMemory {
     std::unique_ptr<Stage<N>> stage;
   };
   Machine<N> values_;
+  std::optional<Machine<N>> rates_;  // of the model's states
   StartNotes<N> notes_;
   std::vector<Known> stages_;
 };

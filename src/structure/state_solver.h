@@ -37,7 +37,7 @@ class StateSolver {
 
   // Positions and velocities (consistent.cpp).
   void states();
-  void put_rates(const Tape& rates);
+  void put_rates(Machine<N>& machine);
   void start_values(const std::function<bool(const Node&)>& wanted);
   Outcome solve(const StartPlan::Stages& stages);
   Outcome solve(const StageEquations& equations, const Column& unknowns, unsigned metric);
@@ -66,6 +66,7 @@ class StateSolver {
   bool branch_holds(const std::vector<N>& x, const System& s) const;
   bool branch_was_named(const System& s, const Structure& t) const;
   Outcome leading(const System& s, const Structure& t);
+  void put_rates_of_state(const System& s, const Structure& t);
   Outcome derivatives_of_leading(const System& s, const Structure& t, int order);
   Outcome together(const System& s, const Structure& t, const StageEquations& late, int beyond);
   bool all_given(const System& s, const Structure& t) const;
