@@ -452,11 +452,12 @@ class Dynamics:
             t: the time, s; the initial time if it is None.
             q: coordinates by name; all are 0 if it is None.
             qdot: velocities, and higher derivatives of the state, by name; all are 0 if it is None.
-            z: states of the model by name; all are 0 if it is None.
+            z: states of the model by name, with their rates if x holds these; all are 0 if it is None.
             p: parameters, shape (parameters,), or some by name; those of the model if it is None.
 
         Warns:
-            UserWarning: a velocity of the state differs from the given one, as the given values violate the constraints.
+            UserWarning: a velocity of the state differs from the given one, as the given values violate the constraints; or x holds
+                the rate of a state of the model, which is not among the values.
 
         Raises:
             KeyError: there is no coordinate, velocity, state or parameter of that name.
@@ -476,6 +477,8 @@ class Dynamics:
                     raise KeyError(f"there is no {name!r}; there are {', '.join(expected)}")
         at, others = self.t0 if t is None else time_of(t), self._values(p, self.parameters, lambda: self.p0, "p")
         q_list, qdot_list, z_list = ([number_of(n, have.get(n, 0.0)) for n in expected] for have, expected in zip(given, names, strict=True))
+        if unknown := [n for n in names[2] if n.endswith("'") and n not in given[2]]:
+            warnings.warn(f"x holds the rate {unknown[0]}, which counts as 0: give z={{{unknown[0]!r}: …}}", stacklevel=2)
         x = np.array(self._core.from_motion(at, q_list, qdot_list, z_list, [] if others is None else others.tolist()))
         if self.minimal:
             rates = {n: number_of(n, v) for n, v in given[1].items()}

@@ -99,3 +99,24 @@ def test_no_bias_where_a_force_holds_a_multiplier_by_a_rate() -> None:
     held = an.loads(ROCKET.replace('"-2 - k*x\'\'"', '"-2 - k*lambda.rail"')).dynamics(minimal=False)
     with pytest.raises(an.ModelError, match="a force holds a multiplier by the rate of a state"):
         held.bias(0, held.start)
+
+
+def test_a_state_of_the_motion_that_holds_the_rate_of_a_state_starts_with_it() -> None:
+    model = an.loads("""coordinates = ["x", "y"]
+particle = [{name = "p", mass = 2, position = "x*ex + y*ey"}]
+state.s = {rate = "-s", initial = 1}
+potential.k = "x^2 + y^2"
+constraint = [{name = "c", equation = "y = (1 + s)*x"}]
+initial = {x = 0.3}
+""")
+    f = model.dynamics()
+    assert [state.name for state in f.states] == ["x", "y", "x'", "y'", "s", "s'"]
+    motion = f.motion(f.start)
+    assert motion["s"] == 1 and motion["s'"] == -1 and motion["y'"] == 2 * motion["x'"] - 0.3
+    q, qdot = {"x": motion["x"], "y": motion["y"]}, {"x'": motion["x'"], "y'": motion["y'"]}
+    assert f.state(q=q, qdot=qdot, z={"s": 1, "s'": -1}) == pytest.approx(f.start, abs=0)
+    with pytest.warns(UserWarning, match="x holds the rate s', which counts as 0: give z="):
+        f.state(q=q, qdot=qdot, z={"s": 1})
+    # The rates are those of the motion.
+    run = model.simulate(to="1e-6", at=["1e-6"]).expect()
+    assert run["x'"][-1] - motion["x'"] == pytest.approx(1e-6 * f(0, f.start)[2], rel=1e-5)
