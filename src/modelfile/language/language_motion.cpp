@@ -378,8 +378,8 @@ initial = {qddot = {x = 0.2}, qdddot = {x = 0.05}}
 - If values miss a constraint by no more than 1e-8 of its scale, they count as rounded and are corrected by the least change; if they miss it by more,
   an error names the clash.
 - A guess also names one of several solutions: the nearest is taken.
-- `--q`, `--qdot`, and `--vary` of an initial value, take the place of values and of conditions that clash with them. Values of the file that take part
-  in such a clash move together, by the least change in the mass norm, as an ideal impulse would move velocities: so the start changes continuously
+- `--q`, `--qdot`, and `--vary` of an initial value, take the place of values that clash with them, and of a condition that alone clashes with them.
+  Values of the file that take part in such a clash move together, by the least change in the mass norm, as an ideal impulse would move velocities: so the start changes continuously
   with an angle that varies. A note names each with its old and its new value. The other values of the file stay, and values of the file that clash
   without an option are an error with any options.
 - Angles are in radians: `theta = 0.3`. In degrees they are written `theta = "45 deg"`; a note names an initial angle of 45 rad and others that look like degrees.

@@ -13,8 +13,9 @@ std::vector<LanguageSection> language_of_names() {
        values,
        {{"value", vector, "a number, a formula of other parameters, or a vector"},
         {"unit", text,
-         "its unit, as behind a number; a bare number from outside (`--set`, `--vary`, a table of cases, Python) is "
-         "one of this unit, too"},
+         "its unit, as behind a number; a bare number from outside (`--set`, `--vary`, a table of cases, `with_` in "
+         "Python) is one of this unit, too, and so are the numbers of the parameter in sweeps, tables, plots and "
+         "`model.parameters`; formulas, functions of `dynamics` and generated programs have it in SI units"},
         {"doc", text, "what it is, for reports"}},
        R"md(```toml
 [parameters]
