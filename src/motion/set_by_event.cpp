@@ -1,5 +1,7 @@
 #include "motion/set_by_event.h"
 
+#include <algorithm>
+
 #include "print/print.h"
 #include "setup/outputs/output_tape.h"
 
@@ -32,14 +34,35 @@ W* SetByEvent::entry(const Place& p, const Expansion<W>& point, std::vector<W>& 
 }
 
 template <Number W>
+Outcome SetByEvent::with_all_orders(const Expansion<W>& point, std::optional<Expansion<W>>& more) const {
+  int beyond = 0;
+  for (const auto& [slot, from] : inputs_)
+    if (from.kind == Place::Kind::unknown) beyond = std::max(beyond, from.order - point.program().d[from.index]);
+  if (beyond == 0) return {};
+  std::vector<W> state, leading;
+  point.state(state);
+  point.leading(leading);
+  more.emplace(point.program(), point.parameters(), beyond);
+  more->load(point.time(), state, leading);
+  Outcome o = more->prepare();
+  if (o.ok()) o = more->solve();
+  if (o.ok()) o = more->extend();
+  if (!o.ok()) o.message = "the event '" + event_ + "' sets numbers by derivatives of the motion: " + o.message;
+  return o;
+}
+
+template <Number W>
 Outcome SetByEvent::put(const Expansion<W>& point, std::vector<W>& state, std::vector<W>& parameters,
                         std::vector<ChangeByEvent<W>>& changes) const {
+  std::optional<Expansion<W>> more;
+  if (Outcome o = with_all_orders(point, more); !o.ok()) return o;
+  const Expansion<W>& solution = more ? *more : point;
   Machine<W> machine(tape_, 0, parameters);
   for (const auto& [slot, from] : inputs_) {
     const W* own = from.kind == Place::Kind::unknown ? entry(from, point, state, parameters) : nullptr;
     machine.series(slot)[0] = own                                 ? *own
                               : from.kind == Place::Kind::time    ? point.time()
-                              : from.kind == Place::Kind::unknown ? point.derivative(from.index, from.order)
+                              : from.kind == Place::Kind::unknown ? solution.derivative(from.index, from.order)
                                                                   : W(0);
   }
   machine.evaluate();

@@ -34,6 +34,10 @@ class SetByEvent {
   static Place place(const System& system, const Graph& graph, NodeId symbol);
   template <Number W>
   static W* entry(const Place& place, const Expansion<W>& point, std::vector<W>& state, std::vector<W>& parameters);
+  // Computes the solution at `point` with all orders that the formulas contain, in `more`; leaves it empty if `point`
+  // has them by its leading derivatives.
+  template <Number W>
+  Outcome with_all_orders(const Expansion<W>& point, std::optional<Expansion<W>>& more) const;
 
   std::string event_;
   Tape tape_;

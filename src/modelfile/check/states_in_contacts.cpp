@@ -13,14 +13,15 @@ bool holds(Expr e, Kind kind) {
   return std::any_of(nodes.begin(), nodes.end(), [&](NodeId id) { return e.graph->node(id).kind == kind; });
 }
 
-// True if the acceleration along a gap or a slip velocity holds the accelerations q'' by the coefficients `along` alone,
-// and no force.
-bool accelerates_along(const Model& model, Expr acceleration, const Column& along) {
-  const Expr e = put_state_rates(model, acceleration, 1);
-  const Column by = gradient(e, jets(model, 2));
+// True if the acceleration along `e`, which is a function of positions (order 0) or of velocities (order 1), holds the
+// accelerations q'' by the partial derivatives of `e` alone, and no force.
+bool along_itself(const Model& model, Expr e, unsigned order) {
+  const Column along = gradient(e, jets(model, order));
+  const Expr acceleration = put_state_rates(model, total_derivative(e, 2 - order), 1);
+  const Column by = gradient(acceleration, jets(model, 2));
   for (std::size_t a = 0; a < by.size(); ++a)
     if (!proved_zero(by[a] - along[a])) return false;
-  return jet_order(e) <= 2 && !holds(e, Kind::multiplier);
+  return jet_order(acceleration) <= 2 && !holds(acceleration, Kind::multiplier);
 }
 
 }  // namespace
@@ -28,17 +29,18 @@ bool accelerates_along(const Model& model, Expr acceleration, const Column& alon
 void settle_states_in_contacts(Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics) {
   if (model.states.empty() || diagnostics.has_errors()) return;
   for (Contact& c : contacts) {
-    bool good = !holds(c.gap, Kind::state) ||
-                accelerates_along(model, total_derivative(c.gap, 2), gradient(c.gap, jets(model, 0)));
+    const bool of_velocities = c.held && c.held->order == 1;
+    bool good = !holds(c.gap, Kind::state) || along_itself(model, c.gap, of_velocities ? 1 : 0);
+    if (of_velocities) c.gap = put_state_rates(model, c.gap, 1);
     for (Expr& v : c.slip) {
       if (!holds(v, Kind::state)) continue;
-      good = good && accelerates_along(model, total_derivative(v), gradient(v, jets(model, 1)));
+      good = good && along_itself(model, v, 1);
       v = put_state_rates(model, v, 1);
     }
     if (!good)
       diagnostics.error(c.span,
-                        "the contact '" + c.element +
-                            "' holds a state whose rate depends on velocities, accelerations or forces",
+                        (c.held ? "the constraint '" + c.name + "' with 'active'" : "the contact '" + c.element + "'") +
+                            " holds a state whose rate depends on velocities, accelerations or forces",
                         "a rate of states, positions and time; or a body with a coordinate in place of the state");
   }
 }

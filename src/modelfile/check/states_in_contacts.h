@@ -1,12 +1,12 @@
-// Contacts whose gap or slip velocity holds a state of the model, such as the speed of a belt.
+// Contacts, and constraints with `active`, that hold a state of the model, such as the speed of a belt.
 #pragma once
 #include "modelfile/mechanical/contacts.h"
 
 namespace anholon {
 
-// Replaces rates of states in slip velocities by their formulas. Adds an error for each contact whose gap or slip velocity
-// holds a state with a rate that depends on velocities, accelerations or forces: the contact would then move the state,
-// and its law has no force for that.
+// Replaces rates of states in slip velocities, and in velocities that `active` constrains, by their formulas. Adds an error for each contact whose gap or slip
+// velocity, and each constraint with `active` that, holds a state with a rate that depends on velocities, accelerations
+// or forces: the contact would then move the state, and its law has no force for that.
 void settle_states_in_contacts(Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics);
 
 }  // namespace anholon

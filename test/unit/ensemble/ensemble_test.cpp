@@ -202,6 +202,42 @@ TEST(Ensemble, EveryCaseIsWhatSimulateMakesOfIt) {
   EXPECT_EQ(run.report.in_workspaces, 0U) << "nothing here needs a workspace of its own";
 }
 
+// An event sets numbers by derivatives beyond those of the equations: x = cos t and s = sin t until t = 1.
+TEST(Ensemble, EventsSetDerivativesOfAnyOrderAsInSimulate) {
+  const std::string text = R"toml(
+coordinates = ["x", "y"]
+parameters.scale = 1
+state.s = {rate = "cos(t)", initial = 0}
+potential.k = "x^2/2"
+initial.x = 1
+[[particle]]
+name = "p"
+mass = 1
+position = "x*ex + y*ey"
+[[event]]
+name = "set"
+when = "t - 1"
+set = {y = "scale*D(x,3)", "y'" = "scale*D(x,6)", s = "s'' + s'"}
+)toml";
+  Sweep run(text);
+  run.options.to = 2;
+  run.options.kernel = false;
+  run.options.varied = {parameter(run.model(), "scale")};
+  run.cases({{Rational(1)}, {Rational(3)}});
+  const auto list = run.go();
+  ASSERT_EQ(list.size(), 2U);
+  for (const std::size_t k : {0U, 1U}) {
+    const double scale = k == 0 ? 1 : 3, sine = std::sin(1.0), cosine = std::cos(1.0);
+    const std::vector<double> row = simulated(text, {{"scale", k == 0 ? "1" : "3"}}, 2);
+    ASSERT_TRUE(list[k].outcome.ok()) << list[k].outcome.message;
+    ASSERT_EQ(list[k].last.size(), 5U) << "x, y, x', y', s";
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(list[k].last[i], row[1 + i]) << "the last bit";
+    EXPECT_NEAR(list[k].last[1], scale * (sine - cosine), 1e-14);
+    EXPECT_NEAR(list[k].last[3], -scale * cosine, 1e-14);
+    EXPECT_NEAR(list[k].last[4], cosine - sine + std::sin(2.0) - sine, 1e-14);
+  }
+}
+
 // A kernel has the pivots of the start for which it is made, which in an ensemble is the start of another case.
 TEST(Ensemble, KernelsAreSeenInTheLastDigits) {
   Sweep run(kPendulum);
