@@ -116,15 +116,19 @@ Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bo
   Column phi;
   std::vector<std::size_t> from;
   for (std::size_t r = 0; r < m.phi.size(); ++r)
-    if (m.order[r] == 0) phi.push_back(values ? parameters_put(model, m.phi[r]) : m.phi[r]), from.push_back(r);
+    if (m.order[r] == 0) {
+      const Expr e = put_state_rates(model, put_masses(model, m.phi[r]), 1);
+      phi.push_back(values ? parameters_put(model, e) : e), from.push_back(r);
+    }
   const std::size_t holonomic = phi.size();
   from.insert(from.end(), linear.begin(), linear.end());
   bool time = false;
   const auto rheonomic = [&](const Column& es) {
-    for (NodeId id : symbols(es)) time = time || g.node(id).kind == Kind::time || g.node(id).kind == Kind::given;
+    for (NodeId id : symbols(es)) time = time || g.node(id).kind == Kind::time || is_function_of_time(g.node(id));
   };
   for (std::size_t r : linear) {
     Column row = coefficients(m, r);
+    for (Expr& e : row) e = put_state_rates(model, e, 1);
     if (values)
       for (Expr& e : row) e = parameters_put(model, e);
     time = time || !is_zero(row.back());
@@ -133,7 +137,7 @@ Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bo
   }
   rheonomic(phi);
   Pfaffian p;
-  p.space = {m.q, time};
+  p.space = {m.q, time, &model};
   if (time) p.space.z.push_back(g.time());
   for (Expr f : phi) p.forms.push_back(p.space.differential(f));
   for (Column& row : rows) {
@@ -302,6 +306,15 @@ Rows annihilator(const Pfaffian& p, const Rows& brackets, const std::vector<std:
   return out;
 }
 
+// Gives up if a constraint holds a state that the motion moves: the forms are those of positions and time alone.
+void check_states(const Mechanics& m, const std::vector<std::size_t>& linear) {
+  for (std::size_t r = 0; r < m.phi.size(); ++r)
+    if (m.order[r] == 0 || std::find(linear.begin(), linear.end(), r) != linear.end())
+      if (const StateVariable* s = state_moved_by_motion(*m.model, {m.phi[r]}))
+        throw GaveUp{"the constraint '" + m.model->constraints[r].name + "' holds the state '" + s->name +
+                     "', whose rate depends on the motion"};
+}
+
 void decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointValues& near, bool values,
             Integrability& out) {
   FormPoint at(m, near, 1, false), generic(m, near, 2, true);
@@ -359,6 +372,7 @@ Integrability integrability(const Mechanics& m, const std::vector<std::size_t>& 
   if (linear.empty()) return out;
   const PrecisionScope precision(kFormDigits);
   try {
+    check_states(m, linear);
     decide(m, linear, near, false, out);
   } catch (const GaveUp& e) {
     out.undecided = e.why;

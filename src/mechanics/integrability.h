@@ -16,6 +16,9 @@
 // integrable. Integrability is proved: X f = 0 as an identity for all X of a basis of ker I, or dw = 0 mod I^(p) if no
 // elementary f is found.
 //
+// A state of the model whose rate depends on time and such states alone counts as a function of time. If a constraint
+// holds a state with another rate, nothing is decided.
+//
 // HYPOTHESIS: ranks are generic, those of a random point near the state.
 #pragma once
 #include <optional>

@@ -6,15 +6,43 @@
 
 namespace anholon {
 
+bool is_function_of_time(const Node& n) {
+  return n.kind == Kind::given || n.kind == Kind::state || n.kind == Kind::control;
+}
+
+const StateVariable* state_moved_by_motion(const Model& model, const Column& es) {
+  const Graph& g = *model.graph;
+  Column all;  // the formulas, then the rates of the states in them and in these rates
+  for (Expr e : es) all.push_back(put_masses(model, e));
+  std::vector<bool> seen(model.states.size(), false);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (NodeId id : symbols({&all[i], 1})) {
+      const Node n = g.node(id);
+      if (n.kind != Kind::state || seen[n.index]) continue;
+      seen[n.index] = true;
+      const StateVariable& s = model.states[n.index];
+      const Expr rate = put_masses(model, s.rate);
+      for (NodeId of_rate : symbols({&rate, 1}))
+        if (const Node& r = g.node(of_rate);
+            r.kind != Kind::time && r.kind != Kind::parameter && !is_function_of_time(r))
+          return &s;
+      all.push_back(rate);
+    }
+  return nullptr;
+}
+
 Column FormSpace::differential(Expr f) const {
   Column df = gradient(f, z);
   if (!time) return df;
   Graph& g = *f.graph;
-  for (NodeId id : symbols({&f, 1}))
-    if (const Node n = g.node(id); n.kind == Kind::given) {
-      const Expr slope = partial(f, {&g, id});
-      df.back() += slope * g.given(n.index, n.order + 1U);
-    }
+  for (NodeId id : symbols({&f, 1})) {
+    const Node n = g.node(id);
+    if (!is_function_of_time(n)) continue;
+    const Expr slope = partial(f, {&g, id});
+    df.back() += slope * (n.kind == Kind::given     ? g.given(n.index, n.order + 1U)
+                          : n.kind == Kind::control ? g.control(n.index, n.order + 1U)
+                                                    : put_state_rates(*model, g.state(n.index, n.order + 1U), 1));
+  }
   return df;
 }
 

@@ -2,7 +2,8 @@
 //
 //   df = sum_a df/dz_a dz_a,   X f = sum_a X_a df/dz_a,   [X, Y]_a = X(Y_a) - Y(X_a),   dw_ab = dw_b/dz_a - dw_a/dz_b
 //
-// where z = (q, t) or q. Given functions of time are differentiated by t.
+// where z = (q, t) or q. Functions of time without a formula are differentiated by t: given functions, inputs, and states
+// of the model, whose derivatives are their rates.
 #pragma once
 #include <memory>
 
@@ -16,9 +17,17 @@ namespace anholon {
 struct FormSpace {
   Column z;  // q_1..q_n and, with time, t
   bool time = false;
+  const Model* model = nullptr;  // its states are functions of time
   // Returns df as a form.
   Column differential(Expr f) const;
 };
+
+// True for symbols that are functions of time without a formula.
+bool is_function_of_time(const Node& n);
+
+// Returns the first state in these formulas that is no function of time, because its rate depends on the motion;
+// nullptr if there is none.
+const StateVariable* state_moved_by_motion(const Model& model, const Column& es);
 
 // Returns w(X), which is X f if w = df.
 Expr applied(const Column& w, const Column& X);
