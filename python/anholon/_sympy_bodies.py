@@ -15,7 +15,7 @@ from ._sympy_parts import atoms_of, center_of, exact, integral_of, is_particle, 
 from ._sympy_turns import factors_between, orientation
 
 if TYPE_CHECKING:
-    from .from_sympy import _Import
+    from ._sympy_import import Import
 
 
 @dataclass
@@ -38,7 +38,7 @@ class Turned:
 class Bodies:
     """The bodies of an import."""
 
-    def __init__(self, made: _Import) -> None:
+    def __init__(self, made: Import) -> None:
         self._made = made
         self._turned: dict[int, Turned | None] = {}
 

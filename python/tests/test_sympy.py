@@ -7,7 +7,7 @@ from typing import Any
 import anholon as an
 import numpy as np
 import pytest
-from anholon.from_sympy import _Import
+from anholon._sympy_import import Import
 
 sm = pytest.importorskip("sympy")
 me = pytest.importorskip("sympy.physics.mechanics")
@@ -307,7 +307,7 @@ def actuators() -> Made:
 CASES += [bicycle, chain_of_pendulums, links_in_a_chain, lagrange_skate, actuators]
 
 
-def accelerations_of_sympy(method: Any, made: _Import, values: dict[Any, Any], state: dict[Any, Any]) -> dict[Any, float]:
+def accelerations_of_sympy(method: Any, made: Import, values: dict[Any, Any], state: dict[Any, Any]) -> dict[Any, float]:
     """Returns q'' at a state (coordinates, and rates by q') by SymPy's own equations, computed with 40 digits."""
     q, u, t = list(method.q), [x for x in made.parts.u], made.writer.time
     numbers = {**{k: sm.Float(str(v), 40) for k, v in values.items()}, **{k: sm.Float(v, 40) for k, v in state.items()}}
@@ -349,7 +349,7 @@ def accelerations_of_sympy(method: Any, made: _Import, values: dict[Any, Any], s
     return found
 
 
-def consistent(made: _Import, values: dict[Any, Any]) -> dict[Any, Any]:
+def consistent(made: Import, values: dict[Any, Any]) -> dict[Any, Any]:
     """Returns a random state that satisfies the constraints: coordinates, and rates by q'. Newton's method may fail to close a loop
     from its initial values, so several initial values are tried."""
     for seed in range(3, 12):
@@ -358,7 +358,7 @@ def consistent(made: _Import, values: dict[Any, Any]) -> dict[Any, Any]:
     raise AssertionError("no state satisfies the holonomic constraints")
 
 
-def drawn(made: _Import, values: dict[Any, Any], seed: int) -> dict[Any, Any]:
+def drawn(made: Import, values: dict[Any, Any], seed: int) -> dict[Any, Any]:
     """Returns the state that `consistent` finds for one seed."""
     draw = np.random.default_rng(seed)
     q = made.writer.q
@@ -386,7 +386,7 @@ def drawn(made: _Import, values: dict[Any, Any], seed: int) -> dict[Any, Any]:
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.__name__)
 def test_accelerations_agree(case: Callable[[], Made]) -> None:
     method, values = case()
-    made = _Import(method)
+    made = Import(method)
     model = an.from_sympy(method, values=values, initial={})
     state = consistent(made, values)
     names = made.writer.names

@@ -5,7 +5,7 @@ from typing import Any
 
 import anholon as an
 import pytest
-from anholon.from_sympy import _Import
+from anholon._sympy_import import Import
 from test_sympy import accelerations_of_sympy, consistent
 
 sm = pytest.importorskip("sympy")
@@ -21,7 +21,7 @@ NUMBERS = {m: 1.5, J: 0.25, k: 20, l: 0.5, c: 0.75}
 
 def agree(method: Any, values: dict[Any, Any]) -> an.Model:
     """Asserts that the accelerations of the model at a random state are those of SymPy's equations; returns the model."""
-    made = _Import(method)
+    made = Import(method)
     model = an.from_sympy(method, values=values)
     state, names = consistent(made, values), made.writer.names
     function = model.dynamics(minimal=False)

@@ -15,7 +15,7 @@ from typing import Any
 
 import anholon as an
 import pytest
-from anholon.from_sympy import _Import
+from anholon._sympy_import import Import
 from test_sympy import accelerations_of_sympy, consistent
 
 me = pytest.importorskip("sympy.physics.mechanics")
@@ -77,7 +77,7 @@ def systems(module: str, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Any
 
 def values_for(method: Any) -> dict[Any, Any]:
     """Returns random values of all symbols and given functions; products of inertia are small."""
-    made, draw = _Import(method), random.Random(4)
+    made, draw = Import(method), random.Random(4)
     with contextlib.suppress(an.ModelError):
         made.text("", {}, {})
     product = re.compile(r"(xy|xz|yz|zx|23|12|13|31)$")
@@ -90,7 +90,7 @@ def values_for(method: Any) -> dict[Any, Any]:
 def deviation(method: Any) -> float:
     """Returns the largest relative difference between the accelerations of SymPy and of the model."""
     values = values_for(method)
-    model, made = an.from_sympy(method, values=values), _Import(method)
+    model, made = an.from_sympy(method, values=values), Import(method)
     state, names = consistent(made, values), made.writer.names
     f = model.dynamics(minimal=False)
     rates = {names[c] + "'": state[c.diff(made.time)] for c in made.writer.q}

@@ -8,7 +8,7 @@ from typing import Any
 
 import anholon as an
 import pytest
-from anholon.from_sympy import _Import
+from anholon._sympy_import import Import
 from test_sympy_own import deviation
 
 sm = pytest.importorskip("sympy")
@@ -319,7 +319,7 @@ def rolling_disc_with_six_speeds() -> Any:
 def test_velocities_of_many_terms() -> None:
     """The search for the integral of the velocity ends and finds the coordinates of the centre, so that no coordinates are added."""
     method = rolling_disc_with_six_speeds()
-    assert len(_Import(method).writer.q) == 6
+    assert len(Import(method).writer.q) == 6
     assert deviation(method) < 1e-12
 
 

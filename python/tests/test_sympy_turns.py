@@ -6,7 +6,7 @@ from typing import Any
 
 import anholon as an
 import pytest
-from anholon.from_sympy import _Import
+from anholon._sympy_import import Import
 from test_sympy import accelerations_of_sympy, consistent, rolling_disc
 
 sm = pytest.importorskip("sympy")
@@ -22,7 +22,7 @@ O.set_vel(N, 0)
 
 def agree(method: Any, values: dict[Any, Any]) -> an.Model:
     """Asserts that the accelerations of the model at a random state are those of SymPy's equations; returns the model."""
-    made = _Import(method)
+    made = Import(method)
     numbers = {**values, t: 0}
     state, names = consistent(made, numbers), made.writer.names
     start = {names[x] + mark: state[y] for x in method.q for y, mark in ((x, ""), (x.diff(t), "'"))}

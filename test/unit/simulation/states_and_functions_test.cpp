@@ -62,9 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"NonlinearOrder1",
              "constraint = [{name = \"c\", equation = \"x'^2 + y'^2 = 4 + s'\"}]\n[initial]\n\"x'\" = 1\nguess = "
              "{\"y'\" = 2}"},
-        Case{"NonlinearOrder3",
-             "constraint = [{name = \"c\", equation = \"x'''^2 + y'''^2 = 9\"}]\npotential.k = "
-             "\"x^2/2\"\n[initial]\nx = 1\nqddot = {x = 1, y = -1}"},
+        Case{"NonlinearOrder3", "constraint = [{name = \"c\", equation = \"x'''^2 + y'''^2 = 9\"}]\npotential.k = "
+                                "\"x^2/2\"\n[initial]\nx = 1\nqddot = {x = 1, y = -1}"},
         Case{"Conditions", "potential.k = \"x^2/2 + y^2\"\n[initial]\nx = 0.3\nconditions = [\"y' = s'\"]"}),
     [](const testing::TestParamInfo<Case>& of) { return of.param.name; });
 
