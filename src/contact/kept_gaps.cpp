@@ -85,7 +85,7 @@ class GapRows {
       es.push_back(phi);
       es.push_back(m.order[r] == 0 ? rate(phi) : phi);
     }
-    const Expr gap = put_state_rates(*s_.model, s_.graph().own(contact.gap), 1);
+    const Expr gap = s_.graph().own(contact.gap);
     add(gradient(gap, m.q));
     es.push_back(rate(gap));
     return es;

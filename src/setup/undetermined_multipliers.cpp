@@ -1,6 +1,7 @@
 #include "setup/undetermined_multipliers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "expr/generic_point.h"

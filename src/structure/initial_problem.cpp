@@ -56,7 +56,7 @@ StartPlan::StartPlan(const Mechanics& m, const std::vector<Column>* mass)
   for (const Constraint& c : model.constraints) {
     if (c.order > 1) continue;
     const Expr phi = put_state_rates(model, put_masses(model, c.phi), 1);
-    if (holds_higher(phi)) continue;
+    if (holds_higher(phi)) continue;  // by the rate of a state: it constrains accelerations
     const std::string what = "constraint '" + c.name + "'";
     if (c.order == 0) {
       of_positions.push_back({phi, what, c.span});

@@ -65,8 +65,7 @@ std::string first_nonlinear(const Scenario& s) {
 
 std::vector<Contact> owned(Workspace& s, std::vector<Contact> contacts) {
   for (Contact& c : contacts) {
-    for (Expr* e : {&c.gap, &c.friction, &c.static_friction, &c.restitution})
-      *e = put_state_rates(*s.model, s.graph().own(*e), 1);
+    for (Expr* e : {&c.gap, &c.friction, &c.static_friction, &c.restitution}) *e = s.graph().own(*e);
     for (Expr& v : c.slip) v = s.graph().own(v);
   }
   check_constraints(s);

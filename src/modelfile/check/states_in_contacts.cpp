@@ -31,7 +31,7 @@ void settle_states_in_contacts(Model& model, std::vector<Contact>& contacts, Dia
   for (Contact& c : contacts) {
     const bool of_velocities = c.held && c.held->order == 1;
     bool good = !holds(c.gap, Kind::state) || along_itself(model, c.gap, of_velocities ? 1 : 0);
-    if (of_velocities) c.gap = put_state_rates(model, c.gap, 1);
+    for (Expr* e : {&c.gap, &c.friction, &c.static_friction, &c.restitution}) *e = put_state_rates(model, *e, 1);
     for (Expr& v : c.slip) {
       if (!holds(v, Kind::state)) continue;
       good = good && along_itself(model, v, 1);
