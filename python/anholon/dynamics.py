@@ -10,6 +10,7 @@ from . import _core
 from ._arguments import States, Values, array_of_values, in_order, labelled_values, number_of, numbers_of, states_of, takes_numbers, time_of
 from ._c_names import refuse_c_name
 from ._errors import ModelError
+from ._mass_form import without_rates
 from ._names import by_spelled_names, ByName
 from ._torch import torch_function
 from .formulas import NOT_LINEAR, Formulas, compile_c
@@ -324,36 +325,22 @@ class Dynamics:
     def _equations(self, t: float, x: States, u: Values, p: Values) -> tuple[Array, Array, Array]:
         """Returns M, Phi and the right side of  M q'' = Phi^T lambda + right.  The rates of the model's states are eliminated by
         their equations, so that a thrust, or another force with such a rate, is part of the right side."""
-        import numpy as np
-
         if self.minimal:
             raise ModelError("in independent velocities there is no mass matrix\nhint: dynamics(minimal=False)")
         names = [c.name for c in self.model.coordinates]
-        if self._state_names() != [*names, *(n + "'" for n in names), *self.model.states] or not self.linear:
+        mechanical = [*names, *(n + "'" for n in names)]
+        entries = self._state_names()
+        of_states = entries[len(mechanical) :]  # the model's states, and their rates where a constraint needs them
+        if entries != [*mechanical, *of_states] or not {e.rstrip("'") for e in of_states} <= set(self.model.states) or not self.linear:
             raise ModelError(
                 "the equations are not solved for accelerations alone, so no mass matrix times accelerations is in them\n"
                 "hint: model.equations() shows what they are; f.jac has the derivatives of the rates"
             )
         time = time_of(t)
         state, some, others, batch = self._states(time, x, u, p)
-        matrix: Array
-        right: Array
-        unknowns, matrix, right = self._core.equations(time, state, some, others)
-        n, rates = len(names), {f"{z}'" for z in self.model.states}
-        end = len(unknowns) - sum(unknown in rates for unknown in unknowns)  # a rate that no other equation holds is no unknown
-        forces, acting = matrix[:n, :n], right[:n]
-        if matrix[:n, end:].any():
-            rows = np.moveaxis(matrix[end:], 2, 0)
-            by_rates = np.moveaxis(matrix[:n, end:], 2, 0) @ np.linalg.inv(rows[:, :, end:])
-            if (by_rates @ rows[:, :, n:end]).any():
-                raise ModelError("a force holds a multiplier by the rate of a state, so no M q'' + bias = Phi^T lambda is in the equations")
-            forces = forces - np.moveaxis(by_rates @ rows[:, :, :n], 0, 2)
-            acting = acting - np.einsum("kij,jk->ik", by_rates, right[end:])
-
-        def of_batch(array: Array) -> Array:
-            return array.reshape((*array.shape[:-1], *batch))
-
-        return of_batch(forces), of_batch(matrix[n:end, :n]), of_batch(acting)
+        parts = without_rates(*self._core.equations(time, state, some, others), len(names), {f"{z}'" for z in of_states})
+        forces, jacobian, acting = (part.reshape((*part.shape[:-1], *batch)) for part in parts)
+        return forces, jacobian, acting
 
     def mass_matrix(self, t: float, x: States, p: Values = None) -> Array:
         """Returns M of  M q'' + bias = Phi^T lambda,  shape (coordinates, coordinates), or (coordinates, coordinates, …) of many

@@ -120,3 +120,23 @@ initial = {x = 0.3}
     # The rates are those of the motion.
     run = model.simulate(to="1e-6", at=["1e-6"]).expect()
     assert run["x'"][-1] - motion["x'"] == pytest.approx(1e-6 * f(0, f.start)[2], rel=1e-5)
+
+
+def test_the_mass_matrix_where_the_state_holds_the_rate_of_a_state() -> None:
+    curve = """coordinates = ["x", "y"]
+particle = [{name = "bead", mass = 2, position = "x*ex + y*ey"}]
+constraint = [{name = "rail", equation = "y = x^2*(1 + s) + s^2"}]
+gravity.field = "-9.81*ey"
+state.s = {rate = "cos(t)", initial = 0}
+initial.x = 0.3
+"""
+    f = an.loads(curve).dynamics(minimal=False)
+    assert [entry.name for entry in f.states][-2:] == ["s", "s'"]
+    x, v, s, ds = 0.5, 0.7, 0.3, 1.0
+    state = np.array([x, x * x * (1 + s) + s * s, v, 2 * x * v * (1 + s) + x * x * ds + 2 * s * ds, s, ds])
+    np.testing.assert_allclose(f.mass_matrix(0, state), 2 * np.eye(2), rtol=1e-15)
+    np.testing.assert_allclose(f.constraint_jacobian(0, state), [[-2 * x * (1 + s), 1]], rtol=1e-14)
+    right = f.mass_matrix(0, state) @ f(0, state)[2:4] + f.bias(0, state)
+    np.testing.assert_allclose(right[0] + 2 * x * (1 + s) * right[1], 0, atol=1e-13)  # the force of the rail is normal to it
+    many = np.stack([state, state * 1.0], axis=1)
+    assert f.mass_matrix(0, many).shape == (2, 2, 2) and f.bias(0, many).shape == (2, 2)
