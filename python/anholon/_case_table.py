@@ -49,7 +49,8 @@ def table_of(cases: CaseTable) -> tuple[str, str]:
     if isinstance(cases, (str, os.PathLike)):
         return os.fspath(cases), _core.case_table(os.fspath(cases))
     columns: dict[str, list[str]] = {}
-    for name, values in _items(cases):
+    items = list(_items(cases))
+    for name, values in items[: len(_without_results([str(name) for name, _ in items]))]:
         if str(name) in columns:
             raise ModelError(f"two columns of the table have the name {str(name)!r}\nhint: one column for each name; rename or drop the other one")
         columns[str(name)] = _texts(name, values)
@@ -69,7 +70,13 @@ def names_of_table(text: str) -> set[str]:
     """Returns the names that a table varies. Commas within brackets or quotes do not separate names."""
     heads = [line for line in text.splitlines() if line.strip(" \t")][:1]
     found = re.findall(r'"((?:[^"]|"")*)"|((?:[^,"\[(]|\[[^\]]*\]|\([^)]*\))+)', heads[0] if heads else "")
-    return {(quoted or plain).strip(" \t").removesuffix("(0)") for quoted, plain in found}
+    names = [(quoted or plain).strip(" \t") for quoted, plain in found]
+    return {name.removesuffix("(0)") for name in _without_results(names)}
+
+
+def _without_results(names: list[str]) -> list[str]:
+    """Returns the names of columns without those of results, which follow in the table of a sweep what varies."""
+    return names[: names.index("outcome")] if "outcome" in names else names
 
 
 def lines_of(text: str) -> int:

@@ -180,3 +180,19 @@ def test_a_folder_keeps_the_table(model: an.Model, tmp_path: pathlib.Path) -> No
 def test_a_folder_tells_what_a_table_varies(model: an.Model, tmp_path: pathlib.Path) -> None:
     folder = model.sweep({"m": [1, 2]}, cases=COLUMNS, to=1, out=tmp_path / "few", columns=["x"])
     assert folder.varied == ["m", "k", "x'(0)"]
+
+
+def test_the_table_of_a_sweep_and_some_of_its_lines(model: an.Model, tmp_path: pathlib.Path) -> None:
+    pytest.importorskip("pandas")
+    import pandas
+
+    sweep = model.sweep({"k": [1, 4], "x'": [0, 2]}, to=1)
+    frame = sweep.to_pandas()
+    again = model.sweep(cases=frame[frame["k"] == 4], to=1)
+    assert list(again.varied) == ["k", "x'"]
+    np.testing.assert_array_equal(again["x"], sweep["x"][2:])
+    frame.to_csv(tmp_path / "falls.csv", index_label="case")
+    for cases in (tmp_path / "falls.csv", pandas.read_csv(tmp_path / "falls.csv")):
+        np.testing.assert_array_equal(model.sweep(cases=cases, to=1)["x"], sweep["x"])
+    with pytest.raises(an.ModelError, match="does not choose scenarios"):
+        model.sweep(cases={"case_name": ["heavy", "light"], "k": [1, 2]}, to=1)

@@ -137,7 +137,7 @@ PreparedPiece::PreparedPiece(System of, const inner::Outcome& of_system, std::st
   inner::ask(settings, *scenario, {"", "", [](const std::string&) {}}, options);
   options.threads = asked.threads;
   options.identities = model.identities;
-  move_with(moving(), options);
+  move_with(moving(), *scenario, options);
 }
 
 // Returns the contacts of the model in whose graph the formulas are; empty if a mode is chosen.

@@ -33,7 +33,6 @@ class HybridMotion {
         faults_(s, contacts_, bodies_), joined_(*s.model, contacts), accumulation_(contacts.size()),
         impact_states_(s, contacts_), o_(o) {
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
-    if (end_ < bodies_.at.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
     std::vector<Rational> times = times_of_rows(o, bodies_.at.t, end_);
     choose_order();
     segments_.emplace(s, o_, bodies_, joined_, sink, std::move(times), end_,
@@ -422,17 +421,11 @@ class HybridMotion {
 
 SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>& contacts,
                                         const SimulationOptions& options, RowSink& sink) {
-  const auto held = static_cast<std::size_t>(
-      std::count_if(contacts.begin(), contacts.end(), [](const Contact& c) { return c.held.has_value(); }));
-  if (held > 0 && held < contacts.size())
-    throw Failure(
-        {}, "a motion knows contacts or constraints with 'active', and the model has both",
-        "leave out 'active', or write the contact as a soft one: [[force]] with vector = \"-k*min(P.z, 0)*ez\"");
-  refuse_options(options, s, held > 0);
+  refuse_options(options, s, contacts);
   const auto start = std::chrono::steady_clock::now();
   const std::vector<Contact> own = with_whole_exponents(s, contacts);
   SimulationReport r =
-      held > 0 ? simulate_with_switches(s, own, options, sink) : HybridMotion(s, own, options, sink).go();
+      are_switches(own) ? simulate_with_switches(s, own, options, sink) : HybridMotion(s, own, options, sink).go();
   for (const std::string& note : r.notes)
     if (options.note && is_of_support(note)) options.note(note);
   for (const std::string& note : notes_of_redundancy(s)) {

@@ -21,8 +21,6 @@ class SwitchedMotion {
     at_.t = o.state.t ? *o.state.t : Rational(s.state.t);
     at_.q = s.state.q, at_.qd = s.state.qd, at_.states = s.state.states;
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
-    if (end_ < at_.t)
-      throw Failure({}, "a motion with constraints that are switched goes forwards only", "an end after the start");
     times_ = times_of_rows(o, at_.t, end_);
     rows_.only_at(times_);
     for (const Event& e : s.model->events)

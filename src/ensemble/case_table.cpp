@@ -58,18 +58,23 @@ CaseTable::CaseTable(std::string text, std::string file) : text_(std::move(text)
   if (!header) throw Failure({}, "the table " + file_ + " is empty", kTableHint);
   std::vector<std::string> all = split_csv(line(header_));
   all.resize(cells);
+  for (std::string& name : all) name = trimmed(name);
+  // In the table of a sweep the results of a case follow what varies.
+  all.erase(std::find(all.begin(), all.end(), "outcome"), all.end());
   for (std::size_t k = 0; k < all.size(); ++k) {
-    std::string name = trimmed(all[k]);
+    std::string& name = all[k];
+    if (name == "case_name")
+      mistake_at(header_, k, "a table of cases does not choose scenarios, and 'case_name' names them",
+                 "leave out the column; --vary case=a,b computes all lines in each scenario, --case a in one");
     if (name == "case") {
       number_ = k;
       continue;
     }
     // A table of a sweep calls an initial value x(0).
     if (name.ends_with("(0)")) name.erase(name.size() - 3);
-    names_.push_back(name);
+    names_.push_back(std::move(name));
     places_.push_back(k);
   }
-  if (names_.empty()) mistake_at(header_, 0, "the table names nothing that varies", kTableHint);
   if (lines_.empty()) mistake_at(header_, 0, "the table has no cases", kTableHint);
 }
 
@@ -88,6 +93,7 @@ void CaseTable::must_number_cases(const std::vector<std::string>& scenarios, boo
                named ? "--vary case=" + cell + " computes all lines in the scenario; a table for each scenario"
                      : "leave out the column");
   }
+  if (names_.empty()) mistake_at(header_, 0, "the table names nothing that varies", kTableHint);
 }
 
 std::string_view CaseTable::line(std::size_t begin) const {

@@ -16,11 +16,14 @@ class CaseTable {
  public:
   // `text`: the text of a CSV file. `file` names the table in messages. Empty lines are skipped. Throws MistakeInWord
   // if there is no header, no row, or a line whose number of cells differs from that of the header.
+  //
+  // The text may be the table of a sweep: the columns from "outcome" on are the results of its cases and are left out,
+  // and "(0)" after the name of an initial value, too. Throws MistakeInWord if there is a column "case_name".
   CaseTable(std::string text, std::string file);
 
-  // Removes a column "case", which contains the numbers of cases in the table of a sweep and varies nothing. Throws
-  // MistakeInWord if a cell of such a column is not a whole number or is one of these names of scenarios, and also if
-  // the model gives the name "case" to something that may vary.
+  // Checks the column "case", which numbers the cases in the table of a sweep and varies nothing. Throws
+  // MistakeInWord if a cell of the column is not a whole number or is one of these names of scenarios, if the model
+  // gives the name "case" to something that may vary (`varies`), and if the table has no other column.
   void must_number_cases(const std::vector<std::string>& scenarios, bool varies) const;
   const std::vector<std::string>& names() const { return names_; }
   std::size_t rows() const { return lines_.size(); }

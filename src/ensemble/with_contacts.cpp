@@ -3,17 +3,20 @@
 #include "contact/hybrid.h"
 #include "contact/mode/mode_model.h"
 #include "contact/mode/switched_model.h"
+#include "contact/refused_options.h"
 
 namespace anholon {
 
-void move_with(const std::vector<Contact>& contacts, EnsembleOptions& o) {
+void move_with(const std::vector<Contact>& contacts, const Scenario& s, EnsembleOptions& o) {
   if (contacts.empty()) return;
-  o.own_motion = [&contacts](Workspace& s, const SimulationOptions& options, RowSink& rows) {
-    return simulate_with_contacts(s, contacts, options, rows);
+  SimulationOptions of_motion;
+  of_motion.state = o.state;
+  of_motion.to = o.to;
+  refuse_options(of_motion, s, contacts);
+  o.own_motion = [&contacts](Workspace& of_case, const SimulationOptions& options, RowSink& rows) {
+    return simulate_with_contacts(of_case, contacts, options, rows);
   };
   o.own_columns = contact_columns(contacts);
-  // The estimate compares with a second run, which a motion with contacts does not have.
-  o.estimate = ErrorEstimate::never;
 }
 
 void switch_with(const std::vector<Contact>& contacts, const Model& model, EnsembleOptions& o) {

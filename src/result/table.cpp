@@ -19,8 +19,13 @@ std::string_view digits_beside(const Row& row, std::size_t k) {
 
 std::string RunTable::text(std::size_t row, std::size_t column) const {
   if (column < texts.size() && row < texts[column].size() && !texts[column][row].empty()) return texts[column][row];
-  return number_text(values[column][row]);
+  const double value = values[column][row];
+  return of_cases() && std::isnan(value) ? std::string() : number_text(value);
 }
+
+bool RunTable::holds_words(std::size_t column) const { return of_cases() && is_column_of_words(columns[column]); }
+
+bool is_column_of_words(std::string_view name) { return name == "outcome" || name == "event" || name == "case_name"; }
 
 void RunTable::set_columns(std::vector<std::string> names) {
   columns = std::move(names);

@@ -28,7 +28,11 @@ struct RunTable {
       texts;  // per column: empty, or one text per row, which is empty if the number's own text suffices
 
   std::size_t rows() const { return values.rows(); }
-  // The number in its written form.
+  // True for a table of cases, as of a sweep: its first column is `case`, that of a run is `t`. Its cells may be empty.
+  bool of_cases() const { return !columns.empty() && columns.front() == "case"; }
+  // True for a column of a table of cases that holds words, even if all of them are empty.
+  bool holds_words(std::size_t column) const;
+  // The number in its written form; of a cell without a number "nan", in a table of cases an empty text.
   std::string text(std::size_t row, std::size_t column) const;
   void set_columns(std::vector<std::string> names);
   // Adds a written number at the end of a column; returns false if it is not a number: it is then kept as a text beside
@@ -39,6 +43,9 @@ struct RunTable {
   // The index of a column, or columns.size().
   std::size_t find(std::string_view name) const;
 };
+
+// True for the columns of a table of cases that hold words: outcome, event, case_name.
+bool is_column_of_words(std::string_view name);
 
 // Converts a written number to a double: decimals, fractions such as 1/3, nan, inf. Returns false for other texts.
 bool parse_number(std::string_view written, double& value);

@@ -57,7 +57,7 @@ ParquetTable table_of_csv(std::string_view text, const std::string& path) {
   }
   for (std::size_t k = 0; k < table.columns.size(); ++k) {
     const std::string& name = table.columns[k].name;
-    if (worded[k] || name == "outcome" || name == "event")
+    if (worded[k] || inner::is_column_of_words(name))
       table.columns[k].values = std::move(words[k]);
     else
       table.columns[k].values = std::move(numbers[k]);

@@ -133,7 +133,7 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
     for (const std::string& text : notes_of_formulas(p.scenario, e.reductions)) asker().note(text);
   ask(o.motion, p.scenario, asker(), e);
   try {
-    if (o.mode.empty()) move_with(contacts(*p.in.names), e);
+    if (o.mode.empty()) move_with(contacts(*p.in.names), p.scenario, e);
   } catch (const Failure& f) {
     throw usage_error(f, p.in.source);
   }

@@ -46,7 +46,7 @@ class FurtherRuns {
 Outcome FurtherRuns::begin(const EnsembleCase& numbers) {
   StateChoice state = o_.state;
   state.overrides = overrides_of(o_, &numbers);
-  if (own_ && !exponents_vary_ && !o_.each_anew &&
+  if (own_ && !exponents_vary_ && !o_.each_anew && !o_.own_motion &&
       parameters_->same_structure(parameters_->values<double>(numbers.values))) {
     for (std::size_t i = 0; i < o_.varied.size(); ++i)
       if (const Varied& v = o_.varied[i]; v.kind == Varied::Kind::parameter)
@@ -133,7 +133,7 @@ SimulationReport FurtherRuns::look_at(const CaseResult& r) {
   options.method = o_.method;
   options.kernel = o_.kernel;
   NoRows rows;
-  return simulate_in(*own_, options, rows, &looked_at_);
+  return o_.own_motion ? o_.own_motion(*own_, options, rows) : simulate_in(*own_, options, rows, &looked_at_);
 }
 
 // The reports of two further runs of a case.
@@ -147,10 +147,10 @@ std::size_t cases_in_turn(const EnsembleOptions& o, std::size_t cases) {
   return o.estimate == ErrorEstimate::always ? 1 : std::max<std::size_t>(cases, 1);
 }
 
-CasesError error_of(std::span<const CaseResult* const> fit, std::span<const Judged> judged) {
+CasesError error_of(const EnsembleOptions& o, std::span<const CaseResult* const> fit, std::span<const Judged> judged) {
   CasesError all;
   for (std::size_t i = 0; i < fit.size(); ++i) {
-    const SimulationReport& r = judged[i].compared;
+    const SimulationReport& r = o.own_motion ? judged[i].looked_at : judged[i].compared;
     if (!r.error) {
       all.none = r.no_error;
       continue;
@@ -199,6 +199,8 @@ void judge_cases(const Scenario& scenario, const EnsembleOptions& o, std::span<c
   const std::size_t in_turn = cases_in_turn(o, fit.size());
   each(2 * ((fit.size() + in_turn - 1) / in_turn), [&](std::size_t task) {
     const bool compares = task % 2 == 0;
+    // Motions that are no motion of one system, as those with contacts, say themselves why they have no estimate.
+    if (compares && o.own_motion) return;
     FurtherRuns runs(scenario, o);
     for (std::size_t i = task / 2 * in_turn; i < std::min(fit.size(), (task / 2 + 1) * in_turn); ++i) {
       try {
@@ -214,7 +216,7 @@ void judge_cases(const Scenario& scenario, const EnsembleOptions& o, std::span<c
       }
     }
   });
-  report.error = error_of(fit, judged);
+  report.error = error_of(o, fit, judged);
   report.residuals = residuals_of(fit, judged);
   if (!report.error.error && report.error.none.empty()) report.error.none = none_is_fit(o, results);
   if (report.residuals.cases.empty() && report.residuals.none.empty()) report.residuals.none = none_is_fit(o, results);

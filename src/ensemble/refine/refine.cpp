@@ -6,6 +6,7 @@
 
 #include "base/json.h"
 #include "ensemble/refine/borders.h"
+#include "result/table.h"
 
 namespace anholon {
 
@@ -94,11 +95,10 @@ void must_be_refinable(const Variation& variation, const std::vector<std::string
                       (near.empty() ? "" : "; did you mean '" + near + "'?"),
                   kHint);
   }
-  for (const char* words : {"outcome", "event", "case_name"})
-    if (rule.column == words)
-      throw Failure({}, "the column '" + rule.column + "' holds words, and a bound is one of numbers",
-                    "borders between outcomes and events are refined in any case; leave out the rule, or give a column "
-                    "of numbers");
+  if (is_column_of_words(rule.column))
+    throw Failure({}, "the column '" + rule.column + "' holds words, and a bound is one of numbers",
+                  "borders between outcomes and events are refined in any case; leave out the rule, or give a column "
+                  "of numbers");
   if (rule.column.empty() && !has("outcome"))
     throw Failure({}, "without the column 'outcome' nothing tells where a border is",
                   "add outcome to the columns, or give a column to refine by");

@@ -22,7 +22,7 @@ ParquetTable table_of(const RunFile& run) {
   const RunTable& t = run.table;
   for (std::size_t c = 0; c < t.columns.size(); ++c) {
     look_for_stop();
-    if (t.texts[c].empty()) {
+    if (t.texts[c].empty() && !t.holds_words(c)) {
       out.columns.push_back({t.columns[c], std::vector<double>(t.values[c].begin(), t.values[c].end())});
       continue;
     }

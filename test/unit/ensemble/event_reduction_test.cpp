@@ -65,7 +65,7 @@ struct Sweep {
     EXPECT_TRUE(make_scenario(open->model, *find_formulation("routh"), {}, scenario).ok());
     options.to = 2;
     options.varied = {{Varied::Kind::parameter, 0, 0, "e"}};
-    move_with(moving, options);
+    move_with(moving, scenario, options);
   }
   std::vector<CaseResult> go(std::size_t cases, std::size_t threads) {
     options.cases = cases;
