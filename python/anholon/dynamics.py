@@ -429,8 +429,8 @@ class Dynamics:
         """Returns x, shape (states,), for values of coordinates, velocities ("x'") and states of the model by name, in SI units.
 
         Values left out are 0. Higher derivatives that belong to the state ("x''") are given with the velocities. In independent
-        velocities, the part of the velocities that violates the constraints is lost; `Model.initial` completes a state from the
-        values that are given.
+        velocities (``f.minimal``), the part of the velocities that violates the constraints is lost. A state of all velocities is
+        as it is given, whether or not it keeps the constraints. `Model.initial` completes a state from the values that are given.
 
         Independent velocities may depend on parameters, as their formulas in ``f.states`` show. A state for ``f(t, x, p=p)`` then
         needs the same ``p``; without `p` it belongs to the parameters of the model.

@@ -22,8 +22,10 @@ const char* type_name(const Value& v) {
     return "a rotation";
   case 3:
     return "a body";
-  default:
+  case 4:
     return "'inertial'";
+  default:
+    return std::get<IncompleteName>(v).is;
   }
 }
 

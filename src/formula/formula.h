@@ -141,11 +141,19 @@ struct BodyName {
   std::size_t index;
 };
 struct InertialName {};
+// A name without a value of its own: that of a table without an argument, lambda without a constraint. `is` says in
+// messages what it is.
+struct IncompleteName {
+  const char* is;
+};
+inline constexpr IncompleteName kMultipliers{"a list of multipliers (one is lambda.NAME)"},
+    kMultipliersOfVector{"a list of multipliers (one is lambda.NAME.x)"};
 
-using Value = std::variant<Expr, Vector, Rotation, BodyName, InertialName>;
+using Value = std::variant<Expr, Vector, Rotation, BodyName, InertialName, IncompleteName>;
 const char* type_name(const Value& v);
 inline bool is_body(const Value& v) { return std::holds_alternative<BodyName>(v); }
 inline bool is_inertial(const Value& v) { return std::holds_alternative<InertialName>(v); }
+inline bool is_incomplete(const Value& v) { return std::holds_alternative<IncompleteName>(v); }
 inline bool is_scalar(const Value& v) { return std::holds_alternative<Expr>(v); }
 
 // The meaning of names. Lookups throw Failure for unknown names (`span` gives the position).

@@ -159,8 +159,7 @@ void say_no_rest(const std::vector<std::string>& states, Outcome& o) {
   if (states.empty()) return;
   std::string names;
   for (const std::string& z : states) names += (names.empty() ? "" : ", ") + z;
-  o.hint += "; positions alone are searched for, and the states keep their initial values: " + names +
-            " of [state] need those of the equilibrium";
+  o.hint += "; so do the values of " + names + " of [state]";
 }
 
 }  // namespace anholon

@@ -27,7 +27,7 @@ std::vector<std::size_t> without_influence(const Scenario& at_rest);
 std::shared_ptr<const Model> held_at_start(const Model& at_rest, const std::vector<std::size_t>& coordinates);
 
 // Replaces the message of a search without equilibrium, because the failed conditions are those of the search, not of
-// the file. `states`: those of the model, which keep their initial values in the search; the hint says so.
+// the file. `states`: those of the model, whose values are searched for with the positions; the hint names them.
 void say_no_rest(const std::vector<std::string>& states, Outcome& outcome);
 
 }  // namespace anholon

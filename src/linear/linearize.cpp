@@ -70,8 +70,8 @@ bool same_structure(const Scenario& a, const Scenario& b) {
 // Linear models at values of a parameter.
 class Values {
  public:
-  Values(ScenarioAt scenario_at, const StateChoice& choice, bool in_exponents, const Signals& signals)
-      : scenario_at_(std::move(scenario_at)), choice_(choice), in_exponents_(in_exponents), signals_(signals) {}
+  Values(ScenarioAt scenario_at, const StateChoice& choice, bool each_anew, const Signals& signals)
+      : scenario_at_(std::move(scenario_at)), choice_(choice), each_anew_(each_anew), signals_(signals) {}
 
   // `check`: true if the steadiness of the motion is decided.
   LinearResult at(const Rational& value, bool check = true) {
@@ -97,7 +97,7 @@ class Values {
         r.outcome = {OutcomeKind::not_a_number, "a parameter has no value here", "choose another value"};
         return r;
       }
-    if (!made_ || in_exponents_ || !same_structure(made_->scenario, scenario))
+    if (!made_ || each_anew_ || !same_structure(made_->scenario, scenario))
       made_ = std::make_unique<Made>(scenario, choice_, signals_);
     r.outcome = made_->linearizer.at(parameters, scenario.state, check, r.model);
     return r;
@@ -118,7 +118,7 @@ class Values {
 
   const ScenarioAt scenario_at_;
   const StateChoice& choice_;
-  const bool in_exponents_;  // the value is substituted in the equations as a number
+  const bool each_anew_;  // each value has equations of its own
   const Signals& signals_;
   std::unique_ptr<Made> made_;  // scenario and linearizer of the last value
 };
@@ -315,8 +315,8 @@ std::string meaning(const Crossing& c) {
 }
 
 Linearization linearize(const ScenarioAt& scenario_at, const StateChoice& choice, const ParameterRange& range,
-                        bool in_exponents, const Signals& signals) {
-  Values values(scenario_at, choice, in_exponents, signals);
+                        bool each_anew, const Signals& signals) {
+  Values values(scenario_at, choice, each_anew, signals);
   Linearization out;
   for (const Rational& value : range.values) out.results.push_back(values.at(value));
   Search search(values);

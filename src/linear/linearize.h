@@ -52,9 +52,10 @@ using ScenarioAt = std::function<Outcome(const Rational& value, Scenario& scenar
 // model of the scenarios.
 Linearization linearize(const Scenario& scenario, const StateChoice& choice, const Signals& signals = {});
 // Linearizes over a range. Each value has a scenario of its own, because a mass that is 0 there changes the order of
-// the equations. `in_exponents`: the parameter occurs in exponents, where whole numbers may be substituted.
+// the equations. `each_anew`: each value has equations of its own, too, because the parameter occurs in exponents, where
+// whole numbers may be substituted, or because initial values of states differ.
 Linearization linearize(const ScenarioAt& scenario_at, const StateChoice& choice, const ParameterRange& range,
-                        bool in_exponents, const Signals& signals = {});
+                        bool each_anew, const Signals& signals = {});
 // Linearizes over a range; the scenarios are made of the model of `scenario`.
 Linearization linearize(const Scenario& scenario, const StateChoice& choice, const ParameterRange& range,
                         const Signals& signals = {});

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "linear/equilibrium.h"
+#include "linear/states_at_rest.h"
 #include "model/exponents.h"
 #include "setup/words/mistake_in_word.h"
 #include "setup/words/value_range.h"
@@ -54,9 +55,12 @@ ParameterRange read_range(const std::string& word, const Model& model) {
   return range;
 }
 
-// Makes the scenario of the model; for an equilibrium, the coordinates that have no influence are held.
+// Makes the scenario of the model. For an equilibrium, its states rest, too, where they can, and the coordinates that
+// have no influence are held.
 Outcome LinearStudy::make(const Model& model, Scenario& scenario) const {
-  const std::shared_ptr<const Model> own = clone(model);
+  const std::shared_ptr<const Model> rests =
+      request_.equilibrium ? with_states_at_rest(model, working_digits()) : nullptr;
+  const std::shared_ptr<const Model> own = clone(rests ? *rests : model);
   const Outcome start = make_scenario(own, *request_.form, request_.choice, scenario);
   if (!request_.equilibrium || !start.ok()) return start;
   const std::vector<std::size_t> held = without_influence(scenario);
@@ -90,8 +94,9 @@ Linearization LinearStudy::compute() const {
       model->parameters[range.parameter].value = model->graph->number(range.unit.in_si(value));
       return make(*model, scenario);
     };
-    const bool in_exponents = !exponents_of(*clone(*model_), {range.parameter}).empty();
-    l = linearize(scenario_at, request_.choice, range, in_exponents, signals_);
+    const bool each_anew =
+        (request_.equilibrium && !states_.empty()) || !exponents_of(*clone(*model_), {range.parameter}).empty();
+    l = linearize(scenario_at, request_.choice, range, each_anew, signals_);
   } else if (start_.ok()) {
     l = linearize(scenario_, request_.choice, signals_);
   } else {

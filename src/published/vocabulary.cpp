@@ -230,7 +230,7 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
     return first == "h" ? p.h : first == "power_noncons" ? p.noncons : p.constraint;
   }
   if (const Column* c = column(first)) {
-    if (rest.empty()) return InertialName{};  // has a meaning in along(Q, x) and Q(x) only
+    if (rest.empty()) return IncompleteName{"a list of numbers (one is along(Q, x), or Q(x))"};
     return (*c)[coordinate(joined(rest, "."), span)];
   }
   if (first == "phi" || first == "mu") {

@@ -226,7 +226,7 @@ void give(StateChoice& choice, const Model& model, const InitialName& of, const 
                           " from the state");
   for (const StateOverride& before : choice.overrides)
     if (before.multiplier == of.multiplier && before.order == of.order && before.coordinate == index)
-      throw Failure({}, called + "'" + of.name + "' is given twice");
+      throw Failure({}, called + "'" + of.name + std::string(of.order, '\'') + "' is given twice");
   if (!of.multiplier)
     if (const auto wrong = GivenQuantity::of_coordinate(model, index, of.order).misfit(value))
       throw Failure({}, called + wrong->message, wrong->hint("a number "));

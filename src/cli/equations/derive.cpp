@@ -98,8 +98,8 @@ int derive(const DeriveCommand& asked) {
   const Model& model = *in.model;
   if (o.format != "text" && o.format != "latex" && o.format != "mathml" && o.format != "c" && o.format != "python" &&
       o.format != "json")
-    throw UsageError{"error: --format: '" + o.format +
-                     "' is not written yet\nhint: text, latex, mathml or json; c or python for a program\n"};
+    throw UsageError{"error: there is no format '" + o.format +
+                     "'\nhint: --format text, latex, mathml or json; c or python for a program\n"};
   if (o.expand != "auto" && o.expand != "none" && o.expand != "paper" && o.expand != "full" && o.expand != "parts")
     throw UsageError{"error: --expand: '" + o.expand + "'\nhint: auto, none, paper, full or parts\n"};
   const Mechanics m = mechanics(model);

@@ -32,8 +32,8 @@ void add_linearize(CommandLine& line) {
   c->add_option(
        "--about", o.about,
        "state (default), or equilibrium: the one to which unbalanced forces fall steadily from the initial\n"
-       "positions, those of --q included; where they do not fall to zero, one that is found near. States of the model\n"
-       "keep their initial values")
+       "positions, those of --q included; where they do not fall to zero, one that is found near. States of [state]\n"
+       "that influence the motion rest, too")
       ->type_name("WHAT")
       ->check(CLI::IsMember({"state", "equilibrium"}));
   c->add_option(

@@ -207,7 +207,7 @@ class InitialReader {
           model_.initial.conditions.push_back({residual, equation_text(c.formula, sides) + suffix, c.formula.whole()});
         };
         for (const Value* side : {&left, &right})
-          if (std::holds_alternative<InertialName>(*side))
+          if (is_incomplete(*side))
             throw Failure(sides[side == &right].span, "this is not a number or vector",
                           "a multiplier is lambda.NAME, NAME being the constraint");
         if (is_scalar(left) && is_scalar(right)) return push(std::get<Expr>(left) - std::get<Expr>(right), "");

@@ -16,7 +16,7 @@ class MultiplierNames final : public Names {
   Graph& graph() override { return names_.graph(); }
   Value name(const std::string& name, Span span) override {
     if (name != "lambda") return names_.name(name, span);
-    return multipliers_.size() == 1 ? Value(graph().multiplier(0, 0)) : Value(InertialName{});
+    return multipliers_.size() == 1 ? Value(graph().multiplier(0, 0)) : Value(kMultipliers);
   }
   std::optional<Value> call(const std::string& function, const std::vector<Value>& arguments,
                             const Syntax& syntax) override {
@@ -29,7 +29,7 @@ class MultiplierNames final : public Names {
     for (std::size_t r = 0; r < multipliers_.size(); ++r)
       if (multipliers_[r] == path) return graph().multiplier(static_cast<std::uint32_t>(r), 0);
     for (const std::string& name : multipliers_)
-      if (name.starts_with(path + ".")) return InertialName{};  // of a vector equation: a component follows
+      if (name.starts_with(path + ".")) return kMultipliersOfVector;  // of a vector equation: a component follows
     const std::string near = did_you_mean(path, multipliers_);
     throw Failure(syntax.span,
                   "there is no constraint '" + path + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
@@ -51,7 +51,7 @@ Value evaluate_with_multipliers(const FormulaText& formula, Names& names, const 
   const Syntax syntax = parse_formula(formula);
   MultiplierNames known(names, multipliers);
   const Value value = evaluate(syntax, known);
-  if (!is_inertial(value) || syntax.op != Syntax::Op::name || syntax.text != "lambda") return value;
+  if (!is_incomplete(value) || syntax.op != Syntax::Op::name || syntax.text != "lambda") return value;
   if (multipliers.empty()) throw Failure(syntax.span, "the model has no constraints, and so no multipliers");
   throw Failure(syntax.span, "there are " + std::to_string(multipliers.size()) + " multipliers",
                 "lambda." + multipliers[0]);

@@ -23,7 +23,8 @@ Value Scope::multiplier(const std::string& path, Span use) {
   if (const auto it = std::find(names.begin(), names.end(), path); it != names.end())
     return graph().multiplier(static_cast<std::uint32_t>(it - names.begin()), 0);
   for (const std::string& n : names)
-    if (n.rfind(path + ".", 0) == 0) return InertialName{};  // a vector equation, of which a component must follow
+    if (n.rfind(path + ".", 0) == 0)
+      return kMultipliersOfVector;  // a vector equation, of which a component must follow
   if (const auto force = forces.of_contacts.find(path, use))
     return graph().multiplier(kContactForces + static_cast<std::uint32_t>(*force), 0);
   if (forces.has_no_value(path)) throw silent_failure();

@@ -173,7 +173,7 @@ Value Scope::evaluate_declaration(const std::string& name, Declaration& d) {
   case Role::control:
     return g.control(static_cast<std::uint32_t>(d.index), 0);
   case Role::table:
-    return InertialName{};  // has a meaning only with an argument
+    return IncompleteName{"a table (its value is NAME(x))"};
   case Role::coordinate:
     return g.jet(static_cast<std::uint32_t>(d.index), 0);
   case Role::function:
@@ -359,7 +359,7 @@ Value Scope::name(const std::string& name, Span span) {
     return *here_;
   }
   if (name == "lambda") {
-    if (forces.allowed()) return InertialName{};  // has a meaning only with a member
+    if (forces.allowed()) return kMultipliers;
     throw Failure(span,
                   "a multiplier has no meaning here: it follows from the equations of which this formula is a part",
                   kWhereMultipliers);
@@ -418,7 +418,7 @@ Value Scope::member(const Value& object, const Syntax& s) {
     const Node* n = e ? &graph().node(e->id) : nullptr;
     return n && n->kind == Kind::multiplier && n->index >= kContactForces;
   };
-  if (forces.allowed() && (is_inertial(object) || is_force()))
+  if (forces.allowed() && (is_incomplete(object) || is_force()))
     if (const std::string path = multiplier_path(s); !path.empty()) return multiplier(path, s.span);
   throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'",
                 is_scalar(object) ? habit_of_member(s) : "");
