@@ -39,10 +39,11 @@ bool Reducer::step(const ReducedStep& step) {
     if (foretold_ && std::isfinite(polynomial_[0]) &&
         !agrees(polynomial_[0], s.last(), std::abs(polynomial_[0]), tolerance_))
       good = false;
+    const auto value = [&](double x) { return step.value(i, x); };
     if (holds(step, i))
-      s.see(polynomial_, step.h, 1);
+      s.see(polynomial_, step.h, value);
     else
-      s.see_by_values([&](double x) { return step.value(i, x); }, step.h, hidden_, tolerance_);
+      s.see_by_values(value, step.h, hidden_, tolerance_);
   }
   length_ += step.h;
   const bool kink = std::exchange(kinks_, step.kinks) != step.kinks;
