@@ -29,8 +29,9 @@ void FormulaSummary::integrate(const std::vector<double>& c, double h, double sc
   weight_ += std::abs(over * h * scale);
 }
 
-void FormulaSummary::see(std::vector<double>& c, double h, const std::function<FormulaValue(double)>& f) {
-  // A polynomial of a formula that is never negative may be so by its round-off. The formula itself decides near zero.
+void FormulaSummary::see(std::vector<double>& c, double h, const std::function<FormulaValue(double)>& f, bool kink) {
+  // A polynomial of a formula that is never negative may be so by its round-off, and beyond a kink it is another
+  // formula. The formula itself decides near zero and at kinks.
   constexpr double kNearZero = 1e-9;
   const int degree = static_cast<int>(c.size()) - 1;
   last_ = value_at(c.data(), degree, h);
@@ -41,9 +42,12 @@ void FormulaSummary::see(std::vector<double>& c, double h, const std::function<F
     const std::optional<double> at = place_above(c.data(), degree, h, known);
     if (!at) return known;
     const double foretold = value_at(c.data(), degree, *at);
-    if (std::abs(foretold) > kNearZero * size) return foretold;
-    const double is = greatest_near([&](double x) { return sign * f(x).value; }, h, *at);
-    return std::isfinite(is) ? std::max(is, known) : foretold;
+    if (std::abs(foretold) > kNearZero * size && !(kink && *at == h)) return foretold;
+    const auto value = [&](double x) { return sign * f(x).value; };
+    const double is = greatest_near(value, h, *at);
+    // The round-off of a formula such as acos(x) where x comes to 1 is much greater than that of its polynomial.
+    const bool known_better = std::abs(is - foretold) <= kNearZero * size || is > value(*at);
+    return std::isfinite(is) && known_better ? std::max(is, known) : foretold;
   };
   if (greatest_) most_ = greatest(most_, 1);
   if (!least_) return;

@@ -47,8 +47,9 @@ class Climb {
 // The values on one side of a place.
 class Side {
  public:
-  // The distances |h| 2^-k, k = kFirst, kFirst + kApart, …, are so long that the round-off of the time is small against
-  // them, and shorter than any width that is to be told from zero. Near an end of [0, h] they are halves of each other.
+  // The distances are |h| 2^-k for k = kFirst, kFirst + kApart, and so on. The round-off of the time is small against
+  // them, and they are shorter than the width of a peak that is to be told from a pole. If an end of [0, h] is nearer
+  // than the longest one, they are halves of each other.
   Side(const std::function<double(double)>& f, double place, double length, double h) {
     constexpr int kFirst = 30, kApart = 3;
     const double longest = std::ldexp(std::abs(h), -kFirst);
@@ -63,7 +64,8 @@ class Side {
 
   // True if the values of sign * f rise by increments that do not fall.
   bool rises(double sign, double noise) const {
-    // Increments that fall by less count as constant. Increments that are smaller parts of the values are round-off.
+    // Increments whose ratios are above kFalls count as constant: those of s^q with q < 0.025 do so. Increments below
+    // kSmall of the values are round-off.
     constexpr double kFalls = 0.95, kSmall = 1e-9;
     double before = 0, size = 0;
     for (std::size_t k = 0; k < values_.size(); ++k) {
@@ -93,7 +95,7 @@ class Side {
 }  // namespace
 
 Growth growth_at(const std::function<double(double)>& f, double sign, double h, double x, double reach, double noise) {
-  constexpr double kDivergent = 0.95;
+  constexpr double kDivergent = 0.95;  // the integral of order 1 diverges, and just below it converges too slowly
   Climb climb(f, sign, h, x);
   climb.go(reach);
   Growth growth;
