@@ -32,7 +32,7 @@ void FormulaSummary::integrate(const std::vector<double>& c, double h, double sc
 void FormulaSummary::see(std::vector<double>& c, double h, const std::function<FormulaValue(double)>& f, bool kink) {
   // A polynomial of a formula that is never negative may be so by its round-off, and beyond a kink it is another
   // formula. The formula itself decides near zero and at kinks.
-  constexpr double kNearZero = 1e-9;
+  constexpr double kNearZero = 1e-9, kRoundOff = 1e-12;
   const int degree = static_cast<int>(c.size()) - 1;
   last_ = value_at(c.data(), degree, h);
   if (mean_) integrate(c, h, 1);
@@ -42,7 +42,10 @@ void FormulaSummary::see(std::vector<double>& c, double h, const std::function<F
     const std::optional<double> at = place_above(c.data(), degree, h, known);
     if (!at) return known;
     const double foretold = value_at(c.data(), degree, *at);
-    if (std::abs(foretold) > kNearZero * size && !(kink && *at == h)) return foretold;
+    // At the beginning the polynomial is the formula.
+    if (*at == 0 || (std::abs(foretold) > kNearZero * size && !(kink && *at == h))) return foretold;
+    // An extreme that is exactly 0 is the bound of such a formula.
+    if (known == 0 && std::abs(foretold) <= kRoundOff * size) return known;
     const auto value = [&](double x) { return sign * f(x).value; };
     const double is = greatest_near(value, h, *at);
     // The round-off of a formula such as acos(x) where x comes to 1 is much greater than that of its polynomial.
@@ -52,7 +55,7 @@ void FormulaSummary::see(std::vector<double>& c, double h, const std::function<F
   if (greatest_) most_ = greatest(most_, 1);
   if (!least_) return;
   for (double& x : c) x = -x;
-  fewest_ = -greatest(-fewest_, -1);
+  fewest_ = 0 - greatest(-fewest_, -1);  // 0, not -0
 }
 
 double FormulaSummary::value(Reduction::Kind kind, double length) const {
@@ -173,7 +176,7 @@ class FormulaSummary::ByValues {
     if (s_.greatest_) s_.most_ = greatest(s_.most_, highest, 1);
     if (!s_.least_) return;
     for (double& x : polynomial_) x = -x;
-    s_.fewest_ = -greatest(-s_.fewest_, -lowest, -1);
+    s_.fewest_ = 0 - greatest(-s_.fewest_, -lowest, -1);
   }
 
   // Returns false if the piece, on which some values are missing, is seen by that: it is short, or the motion has no

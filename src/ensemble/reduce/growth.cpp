@@ -92,6 +92,26 @@ class Side {
   int octaves_ = 1;
 };
 
+// Returns the greatest value between two points, of a function that rises and then falls, by golden sections; `middle`
+// is a point with a value above those at the ends.
+double peak_between(const std::function<double(double)>& f, double from, double to, double middle) {
+  constexpr double kSection = 0.3819660112501051;  // (3 - sqrt(5)) / 2
+  const double shortest = std::numeric_limits<double>::epsilon() * std::abs(to);
+  double best = f(middle);
+  while (std::abs(to - from) > shortest) {
+    const bool left = std::abs(middle - from) > std::abs(to - middle);
+    const double x = middle + kSection * ((left ? from : to) - middle), v = f(x);
+    if (x == middle) break;
+    if (v > best) {
+      (left ? to : from) = middle;
+      middle = x, best = v;
+    } else {
+      (left ? from : to) = x;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 Growth growth_at(const std::function<double(double)>& f, double sign, double h, double x, double reach, double noise) {
@@ -118,13 +138,11 @@ double greatest_near(const std::function<double(double)>& f, double h, double x)
   const double value = f(x);
   if (x != h || !std::isfinite(value)) return value;
   // One of these distances is less than twice that of the kink, where values are greater than at the end.
-  constexpr int kLongest = 24, kShortest = 50, kNext = 4;
+  constexpr int kLongest = 24, kShortest = 48, kNext = 4;
   for (int k = kLongest; k <= kShortest; k += kNext) {
     const double s = std::ldexp(h, -k);
     if (!(f(h - s) > value)) continue;
-    Climb climb(f, 1, h, h - s);
-    climb.go(std::ldexp(std::abs(s), kNext));
-    return climb.greatest();
+    return std::max(value, peak_between(f, h - std::ldexp(s, kNext), h, h - s));
   }
   return value;
 }
