@@ -29,6 +29,7 @@ struct StepPolynomials {
   std::function<std::pair<double, double>(std::size_t i, double x)> followed_value;
   // The arguments, at begin + x, of the functions in its formula that may be nearly constant far from their variation.
   std::function<std::vector<HidingArgument>(std::size_t i, double x)> followed_hiding;
+  std::size_t kinks = 0;  // that have cut a step short so far
 };
 
 // Rows for a picture, if no times of rows are given: so many in each step, at most `widest` apart, and one with the

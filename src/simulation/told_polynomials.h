@@ -45,8 +45,8 @@ class ToldPolynomials {
       if (slots.empty()) return {};
       return hiding_arguments(stepper, W(stepper.before() + W(x)), slots, expansion());
     };
-    return {to_double(stepper.before()), to_double(end), stepper.order(), coefficient, quadrature,
-            stepper.one_sided(),         value,          hiding};
+    return {to_double(stepper.before()), to_double(end), stepper.order(), coefficient,    quadrature,
+            stepper.one_sided(),         value,          hiding,          stepper.kinks()};
   }
 
  private:

@@ -170,7 +170,7 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
                             const auto [value, made_of] = step.followed_value(i, x);
                             return FormulaValue{value, made_of};
                           },
-                          step.followed_hiding});
+                          step.followed_hiding, true, step.kinks});
       std::vector<double> values;
       for (std::size_t i = 0; i < ends; ++i)
         values.push_back(step.followed_value(formulas + i, step.end - step.begin).first);

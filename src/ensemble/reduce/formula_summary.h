@@ -27,8 +27,9 @@ class FormulaSummary {
   bool done() const { return lost_ || !(greatest_ || least_ || mean_); }
   double last() const { return last_; }  // the value at the end of what was seen; NaN before
   void lose() { lost_ = true; }
-  // Sees the polynomial c over x in [0, h], one unit of x being `scale` in time; may change c.
-  void see(std::vector<double>& c, double h, double scale);
+  // Sees the polynomial c over x in [0, h], with the values of the formula; may change c. `kink`: the step ends a little
+  // beyond a kink.
+  void see(std::vector<double>& c, double h, const std::function<FormulaValue(double)>& f, bool kink);
   // Sees the values of the formula over [0, h], and looks at pieces that begin and end at the `hidden` points in it,
   // which are in order from 0 on.
   void see_by_values(const std::function<FormulaValue(double)>& f, double h, const std::vector<double>& hidden,
@@ -38,6 +39,7 @@ class FormulaSummary {
 
  private:
   class ByValues;
+  void integrate(const std::vector<double>& c, double h, double scale);
   bool greatest_ = false, least_ = false, mean_ = false;  // asked for, and still available
   bool lost_ = false;                                     // a value is missing
   double most_ = -std::numeric_limits<double>::infinity(), fewest_ = std::numeric_limits<double>::infinity();

@@ -16,22 +16,25 @@ class Highest {
  public:
   Highest(const std::vector<double>& c, double known) : c_(c), best_(known) {}
 
-  double find() {
-    see(c_[0]);
-    see(value_at(c_.data(), degree(), 1.0));
+  double best() const { return best_; }
+  // Returns where the greatest value is; nullopt if no value is greater than the known one.
+  std::optional<double> find() {
+    see(0);
+    see(1);
     // The bound is the sum of what each term adds at most.
     double bound = c_[0];
     for (std::size_t k = 1; k < c_.size(); ++k) bound += std::max(c_[k], 0.0);
-    if (!(bound > best_) || monotonic()) return best_;
-    search(bernstein(c_), 0, 1, kDeepest);
-    return best_;
+    if (bound > best_ && !monotonic()) search(bernstein(c_), 0, 1, kDeepest);
+    return at_;
   }
 
  private:
   static constexpr int kDeepest = 40, kBisections = 60;
 
   int degree() const { return static_cast<int>(c_.size()) - 1; }
-  void see(double x) { best_ = x > best_ ? x : best_; }
+  void see(double x) {
+    if (const double v = value_at(c_.data(), degree(), x); v > best_) best_ = v, at_ = x;
+  }
   double slope(double x) const {
     double s = 0;
     for (int k = degree(); k >= 1; --k) s = s * x + k * c_[static_cast<std::size_t>(k)];
@@ -56,11 +59,11 @@ class Highest {
       if (now != 0) sign = now;
       if (first == 0) first = now;
     }
-    see(value_at(c_.data(), degree(), from));
-    see(value_at(c_.data(), degree(), to));
+    see(from);
+    see(to);
     if (changes == 0 || depth == 0) return;
     if (changes == 1 && first < 0) return;  // the zero of the slope is a minimum
-    if (changes == 1) return see(value_at(c_.data(), degree(), end_of_rise(from, to)));
+    if (changes == 1) return see(end_of_rise(from, to));
     std::vector<double> left = b;
     for (std::size_t k = 1; k < b.size(); ++k) {
       for (std::size_t j = 0; j + k < b.size(); ++j) b[j] = (b[j] + b[j + 1]) / 2;
@@ -83,18 +86,35 @@ class Highest {
 
   const std::vector<double>& c_;
   double best_;
+  std::optional<double> at_;
 };
 
-}  // namespace
-
-double greatest_on(const double* c, int degree, double h, double known) {
+// Returns the coefficients of u^k, x = u h; none if one is not finite.
+std::vector<double> over_unit(const double* c, int degree, double h) {
   std::vector<double> scaled;
   double power = 1;
   for (int k = 0; k <= degree; ++k, power *= h) {
     scaled.push_back(c[k] * power);
-    if (!std::isfinite(scaled.back())) return known;
+    if (!std::isfinite(scaled.back())) return {};
   }
-  return Highest(scaled, known).find();
+  return scaled;
+}
+
+}  // namespace
+
+double greatest_on(const double* c, int degree, double h, double known) {
+  const std::vector<double> scaled = over_unit(c, degree, h);
+  if (scaled.empty()) return known;
+  Highest highest(scaled, known);
+  (void)highest.find();
+  return highest.best();
+}
+
+std::optional<double> place_above(const double* c, int degree, double h, double known) {
+  const std::vector<double> scaled = over_unit(c, degree, h);
+  if (scaled.empty()) return std::nullopt;
+  const std::optional<double> u = Highest(scaled, known).find();
+  return u ? std::optional(*u * h) : std::nullopt;
 }
 
 // ---- interpolation --------------------------------------------------------------------------------------------------
@@ -118,10 +138,14 @@ const std::array<std::array<double, kCount>, kCount>& cosines() {
 
 }  // namespace
 
+double Interpolation::point(int j, double from, double to) {
+  return from + (to - from) * (1 - cosines()[1][static_cast<std::size_t>(j)]) / 2;
+}
+
 Interpolation::Interpolation(const std::function<FormulaValue(double)>& f, double from, double to) {
   constexpr int kNoise = 64;
   for (int j = 0; j < kPoints; ++j) {
-    const FormulaValue v = f(from + (to - from) * (1 - cosines()[1][static_cast<std::size_t>(j)]) / 2);
+    const FormulaValue v = f(point(j, from, to));
     values_[static_cast<std::size_t>(j)] = v.value;
     if (!std::isfinite(v.value)) ++without_value_;
     if (v.beyond_motion()) ++beyond_motion_;

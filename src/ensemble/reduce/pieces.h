@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace anholon {
@@ -10,6 +11,8 @@ namespace anholon {
 // Returns the greatest value of sum c_k x^k, k <= degree, for x from 0 to h, h of either sign; `known` if no value is
 // greater. All points where the derivative changes its sign are considered.
 double greatest_on(const double* c, int degree, double h, double known);
+// Returns where this polynomial has its greatest value; nullopt if no value is greater than `known`.
+std::optional<double> place_above(const double* c, int degree, double h, double known);
 
 // The value of a formula at a moment, NaN if it has none; and the magnitude of everything that the value is made of, -1
 // if the motion has no solution at this moment.
@@ -24,11 +27,14 @@ class Interpolation {
   static constexpr int kPoints = 13;
 
   Interpolation(const std::function<FormulaValue(double)>& f, double from, double to);
+  // Returns the point j.
+  static double point(int j, double from, double to);
   const std::array<double, kPoints>& values() const { return values_; }
   // The numbers of points without a value, and of those where the motion has no solution.
   int without_value() const { return without_value_; }
   int beyond_motion() const { return beyond_motion_; }
-  double size() const { return size_; }  // the greatest magnitude of a value
+  double size() const { return size_; }    // the greatest magnitude of a value
+  double noise() const { return noise_; }  // the round-off of the values
   double mean() const { return terms_[0]; }
   // The greatest of the last terms.
   double error() const;

@@ -31,6 +31,7 @@ void Reducer::restart() {
 
 bool Reducer::step(const ReducedStep& step) {
   bool good = true;
+  const bool kink = std::exchange(kinks_, step.kinks) != step.kinks;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     FormulaSummary& s = seen_[i];
     if (s.done()) continue;
@@ -39,13 +40,13 @@ bool Reducer::step(const ReducedStep& step) {
     if (foretold_ && std::isfinite(polynomial_[0]) &&
         !agrees(polynomial_[0], s.last(), std::abs(polynomial_[0]), tolerance_))
       good = false;
+    const auto value = [&](double x) { return step.value(i, x); };
     if (holds(step, i))
-      s.see(polynomial_, step.h, 1);
+      s.see(polynomial_, step.h, value, kink);
     else
-      s.see_by_values([&](double x) { return step.value(i, x); }, step.h, hidden_, tolerance_);
+      s.see_by_values(value, step.h, hidden_, tolerance_);
   }
   length_ += step.h;
-  const bool kink = std::exchange(kinks_, step.kinks) != step.kinks;
   foretold_ = !step.look && !kink;
   return good;
 }
