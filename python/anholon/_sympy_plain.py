@@ -58,8 +58,9 @@ def plain(e: Any) -> Any:
 def name_of(key: Any) -> str:
     """Returns the name of a symbol or of a function of time, without its argument; a text stays. The indices of entries stand behind
     commas with blanks."""
-    entry = symbol_of(key)
-    name = str(key.func) if getattr(entry, "args", ()) else str(entry)
+    key = symbol_of(key)
+    applied = hasattr(key, "args") and not hasattr(key, "mro")  # the function F, without an argument, is a class
+    name = str(key.func) if applied and key.args else str(key)
     return re.sub(r"\s*,\s*", ", ", name) if "[" in name else name
 
 

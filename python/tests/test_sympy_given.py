@@ -101,7 +101,7 @@ def test_a_controlled_motion() -> None:
     G.set_vel(N, 0)
     method = me.KanesMethod(N, [q], [u], kd_eqs=[q.diff(t) - u])
     method.kanes_equations([me.RigidBody("rotor", G, B, m, (me.inertia(B, 0, 0, 1), G))], [(B, torque * N.z)])
-    laws: list[dict[Any, Any]] = [{torque: -4 * q - u}, {"torque": "-4*q-u"}]
+    laws: list[dict[Any, Any]] = [{torque: -4 * q - u}, {"torque": "-4*q-u"}, {sm.Function("torque"): -4 * q - u}]
     for law in laws:
         run = an.from_sympy(method, values={m: 1, **law}, initial={q: 1, u: -0.5}).simulate(to=3, at=[3]).expect()
         assert run["q"][-1] == pytest.approx(np.exp(-1.5) * np.cos(np.sqrt(3.75) * 3), rel=1e-10)
