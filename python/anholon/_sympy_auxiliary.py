@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ._errors import ModelError
-from ._sympy_parts import sympy_module
-from ._sympy_writer import name_of
+from ._sympy_plain import name_of, sympy_module
 
 
 class AuxiliaryForces:

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ._errors import ModelError
-from ._sympy_parts import atoms_of, center_of, exact, integral_of, is_particle, mechanics_module, numeric, short_decimal, sympy_module, vanish, with_values
+from ._sympy_parts import atoms_of, center_of, exact, integral_of, is_particle, numeric, short_decimal, vanish, with_values
+from ._sympy_plain import mechanics_module, plain, sympy_module
 from ._sympy_turns import factors_between, orientation
 
 if TYPE_CHECKING:
@@ -61,8 +62,8 @@ class Bodies:
         made, sm = self._made, sympy_module()
         frame = made.parts.frame
         try:
-            inertia = body.central_inertia.to_matrix(body.frame).applyfunc(_without_what_cancels)
-            return Turned(spin, frame.dcm(body.frame), inertia, factors_between(frame, body.frame))
+            inertia = body.central_inertia.to_matrix(body.frame).applyfunc(plain).applyfunc(_without_what_cancels)
+            return Turned(spin, frame.dcm(body.frame).applyfunc(plain), inertia, factors_between(frame, body.frame))
         except ValueError:
             pass
         refused = ModelError(
@@ -74,12 +75,12 @@ class Bodies:
             return None
         carrier = body.central_inertia.args[0][1].args[0][1]
         try:
-            inertia = body.central_inertia.to_matrix(carrier)
+            inertia = body.central_inertia.to_matrix(carrier).applyfunc(plain)
             products = [inertia[a, b] for a in range(3) for b in range(3) if a != b]
             if vanish([*products, inertia[0, 0] - inertia[1, 1], inertia[1, 1] - inertia[2, 2]], {}):
                 angles = [self._angle(f"{body.name}_{axis}", rate) for axis, rate in zip("xyz", spin, strict=True)]
                 return Turned(spin, sm.eye(3), inertia, [], False, angles)
-            turn = frame.dcm(carrier)
+            turn = frame.dcm(carrier).applyfunc(plain)
             own = [made.in_rates(x) for x in body.frame.ang_vel_in(carrier).to_matrix(carrier)]
         except ValueError:
             raise refused from None
@@ -110,7 +111,7 @@ class Bodies:
         if turned is None and not any(made.components(point.vel(made.parts.frame))):
             return ""  # a body that does not turn needs no inertia, and one at rest no mass
         name = w.new(str(body.name))
-        center, mass = json.dumps(made.center(point)), json.dumps(w.formula(body.mass))
+        center, mass = json.dumps(made.center(point)), json.dumps(w.formula(plain(body.mass)))
         if turned is None:
             return f"[[particle]]\nname = {json.dumps(name)}\nmass = {mass}\nposition = {center}\n{self._expelled(body)}"
         begin = f"[[body]]\nname = {json.dumps(name)}\nmass = {mass}\n"
@@ -188,7 +189,7 @@ class Bodies:
         is d/dt (m v)."""
         made = self._made
         velocity = made.components(center_of(body).vel(made.parts.frame))
-        if sympy_module().sympify(body.mass).diff(made.time) == 0 or not any(velocity):
+        if plain(body.mass).diff(made.time) == 0 or not any(velocity):
             return ""
         return f"expelled_velocity = {json.dumps([made.writer.formula(-v) for v in velocity])}\n"
 

@@ -7,13 +7,14 @@ import json
 import random
 import re
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ._errors import ModelError
-from ._numbers import float_of, Number, text_of
+from ._numbers import Number
 from ._sympy_auxiliary import AuxiliaryForces
 from ._sympy_bodies import Bodies
+from ._sympy_given import Given
 from ._sympy_parts import (
     atoms_of,
     center_of,
@@ -21,19 +22,15 @@ from ._sympy_parts import (
     exact,
     has_poles,
     integral_of,
-    mechanics_module,
-    names_in,
-    nearest,
     numeric,
     parts_of,
     rank_of,
-    real,
     solution,
     state_on,
-    sympy_module,
     vanish,
 )
-from ._sympy_writer import name_of, RESERVED, Writer
+from ._sympy_plain import mechanics_module, plain, real, sympy_module
+from ._sympy_writer import RESERVED, Writer
 
 
 class Import:
@@ -65,7 +62,7 @@ class Import:
         zero = self.sm.Integer(0)
         self._zero = {**{u.diff(self.time): zero for u in self.parts.auxiliary}, **dict.fromkeys(self.parts.auxiliary, zero)}
         for name in ("kinematic", "holonomic", "velocity", "acceleration"):
-            setattr(self.parts, name, [real(self.sm.sympify(e)).xreplace(self._zero) for e in getattr(self.parts, name)])
+            setattr(self.parts, name, [plain(e).xreplace(self._zero) for e in getattr(self.parts, name)])
 
     def _solve(self, equations: list[Any], speeds: list[Any]) -> list[Any]:
         """Solves linear equations for speeds and adds them to ``self.speeds``; returns the equations that remain."""
@@ -195,9 +192,9 @@ class Import:
 
     def in_rates(self, e: Any) -> Any:
         """Returns an expression with generalized speeds and their rates replaced by those of coordinates."""
-        e = real(self.sm.sympify(e)).xreplace(self._zero)
+        e = plain(e).xreplace(self._zero)
         second = {u.diff(self.time): x.diff(self.time) for u, x in self.speeds.items()} if e.has(self.sm.Derivative) else {}
-        return real(e.xreplace({k: v for k, v in second.items() if e.has(k)}).xreplace(self.speeds))
+        return plain(e.xreplace({k: v for k, v in second.items() if e.has(k)}).xreplace(self.speeds))
 
     def components(self, vector: Any) -> list[Any]:
         """Returns the components of a vector along the inertial axes."""
@@ -251,7 +248,7 @@ class Import:
         equations the derivatives of the kinetic energy by coordinates on which masses and inertias depend."""
         sm = self.sm
         for body in self.parts.bodies:
-            mass, velocity = sm.sympify(body.mass), sm.Matrix(self.components(center_of(body).vel(self.parts.frame)))
+            mass, velocity = plain(body.mass), sm.Matrix(self.components(center_of(body).vel(self.parts.frame)))
             turned = self.bodies.turned(body)
             inertia, own = (turned.inertia, turned.own) if turned else (sm.zeros(3, 3), sm.zeros(3, 1))
             rise = inertia.diff(self.time)
@@ -324,11 +321,11 @@ class Import:
         """Returns a generalized force without the symbols of loads that cancel in it. Such are the forces at auxiliary speeds, which do no
         work and have no values."""
         sm, loads = self.sm, [x for load in self.parts.loads for x in load if self.parts.auxiliary and hasattr(x, "to_matrix")]
-        told = {x for vector in loads for matrix, _ in vector.args for e in matrix for x in e.free_symbols | e.atoms(sm.core.function.AppliedUndef)}
+        told = {x for vector in loads for matrix, _ in vector.args for e in map(plain, matrix) for x in e.free_symbols | e.atoms(sm.core.function.AppliedUndef)}
         for x in sorted((force.free_symbols | force.atoms(sm.core.function.AppliedUndef)) & told - {self.time, *self.parts.q}, key=str):
-            plain = force.xreplace({x: sm.Integer(0)})
-            if not plain.has(sm.nan, sm.zoo, sm.oo) and self._vanishes([force - plain]):
-                force = plain
+            less = force.xreplace({x: sm.Integer(0)})
+            if not less.has(sm.nan, sm.zoo, sm.oo) and self._vanishes([force - less]):
+                force = less
         return force
 
     def velocity_constraints(self) -> list[Any]:
@@ -362,109 +359,19 @@ class Import:
 
     def text(self, title: str, values: Mapping[Any, Number], initial: Mapping[Any, Number]) -> str:
         """Returns the text of the model file."""
-        w, self._given = self.writer, values
-        bodies = [self.bodies.entry(b, values) for b in self.parts.bodies] if self.parts.lagrangian is None else self.stand_ins()
+        w, given = self.writer, Given(self, values, initial)
+        self._given = given.values
+        bodies = [self.bodies.entry(b, given.values) for b in self.parts.bodies] if self.parts.lagrangian is None else self.stand_ins()
         constraints = [(f"holonomic{k + 1}", w.formula(e)) for k, e in enumerate(self.parts.holonomic)]
         constraints += [(f"velocity{k + 1}", w.formula(e)) for k, e in enumerate(self.velocity_constraints())]
         constraints += [(name, w.formula(e)) for name, e in self.centers]
+        fixed = [*w.parameters, *w.functions]
         forces = {w.names[q]: w.formula(s, f"the generalized force of {w.names[q]}") for q, s in self.generalized_forces().items()}
-        self._must_be_known(values)
-        given, conditions = self._start(initial)
-        value_of = self._values(values)
-        self._must_have_values([symbol for symbol in w.parameters if value_of(symbol) is None])
+        value_lines, initial_lines = given.sections(fixed)
         lines = [f"title = {json.dumps(title)}", 'source = "imported from sympy.physics.mechanics"', ""]
         lines.append(f"coordinates = {json.dumps([w.names[q] for q in w.q])}\n")
-        if w.parameters:
-            lines.append("[parameters]")
-            for symbol, name in w.parameters.items():
-                lines.append(f"{name} = {json.dumps(value_of(symbol))}")
-            lines.append("")
-        if w.functions:
-            lines.append("[functions]")
-            for function, name in w.functions.items():
-                value = value_of(function)
-                lines.append(f"{name} = {json.dumps(value) if value is not None else '{}'}")
-            lines.append("")
-        lines += bodies
+        lines += [*value_lines, *bodies]
         if forces:
             lines.append("[[force]]\ngeneralized = {" + ", ".join(f"{q} = {json.dumps(f)}" for q, f in forces.items()) + "}\n")
         lines += [f'[[constraint]]\nname = "{name}"\nequation = {json.dumps(e + " = 0")}\n' for name, e in constraints]
-        if given or conditions:
-            lines.append("[initial]")
-            lines += [f"{json.dumps(name)} = {json.dumps(value)}" for name, value in given.items()]
-        if conditions:
-            lines.append(f"conditions = {json.dumps(conditions)}")
-        return "\n".join(lines) + "\n"
-
-    def _must_be_known(self, values: Mapping[Any, Number]) -> None:
-        """Raises ModelError if a key of the values is a coordinate or a speed, or a text that names no symbol and no function of the
-        system. Other symbols are allowed, as they may belong to other systems."""
-        if not values:
-            return
-        w, states = self.writer, {name_of(x) for x in [*self.parts.q, *self.parts.u]}
-        known = names_in(self.parts) | {name_of(x) for x in [*w.parameters, *w.functions]}
-        for key, name in ((key, name_of(key)) for key in values):
-            if name in states - known:
-                raise ModelError(f"'{name}' in values is a coordinate or speed\nhint: from_sympy(…, initial={{{name}: …}}) gives its value at the start")
-            if isinstance(key, str) and name not in known:
-                raise ModelError(f"'{name}' in values is no symbol and no function of the system{nearest(name, known)}\nhint: {', '.join(sorted(known))}")
-
-    def _must_have_values(self, missing: list[Any]) -> None:
-        """Raises ModelError for symbols without a value. Several symbols of one name need values by the symbols themselves."""
-        if not missing:
-            return
-        names = [symbol.name for symbol in self.writer.parameters]
-        twice = next((s for s in sorted(missing, key=self.sm.srepr) if names.count(s.name) > 1), None)
-        if twice is not None:
-            of_name = sorted(self.sm.srepr(symbol) for symbol in self.writer.parameters if symbol.name == twice.name)
-            raise ModelError(
-                f"{len(of_name)} symbols have the name {twice.name}: {', '.join(of_name)}\n"
-                f"hint: give the value of each by the symbol itself, from_sympy(…, values={{{self.sm.srepr(twice)}: 1}}), or make one symbol of them"
-            )
-        listed = sorted(symbol.name for symbol in missing)
-        raise ModelError(f"values are missing for {', '.join(listed)}\nhint: from_sympy(…, values={{{listed[0]}: 1}})")
-
-    def _values(self, values: Mapping[Any, Number]) -> Callable[[Any], str | None]:
-        """Returns a function that finds the formula given for a symbol or function: by the symbol, else by a name that is unique."""
-        written = {key: self._value(value, key) for key, value in values.items()}
-        names = [name_of(x) for x in [*self.writer.parameters, *self.writer.functions]]
-        by_name = {name_of(key): value for key, value in written.items() if names.count(name_of(key)) < 2}
-        return lambda of: written.get(of, by_name.get(name_of(of)))
-
-    def _start(self, initial: Mapping[Any, Number]) -> tuple[dict[str, str], list[str]]:
-        """Returns initial values by the names of coordinates and rates, and conditions for generalized speeds."""
-        w = self.writer
-        coordinates, speeds = {name_of(q): q for q in w.q}, {name_of(u): u for u in self.speeds}
-        given: dict[str, str] = {}
-        conditions: list[str] = []
-        for key, value in initial.items():
-            written = self._value(value, key)
-            plain = re.fullmatch(r"(\w+)('*)", key) if isinstance(key, str) else None
-            if isinstance(key, self.sm.Derivative):
-                of = w.formula(key)
-            elif plain and plain[1] in coordinates:
-                of = w.names[coordinates[plain[1]]] + plain[2]
-            elif name_of(key) in coordinates:
-                of = w.names[coordinates[name_of(key)]]
-            elif name_of(key) in speeds:
-                rate = self.speeds[speeds[name_of(key)]]
-                if not isinstance(rate, self.sm.Derivative):
-                    conditions.append(f"{w.formula(rate)} = {written}")
-                    continue
-                of = w.formula(rate)
-            else:
-                known = [*coordinates, *(f"{name}'" for name in coordinates), *speeds]
-                raise ModelError(f"'{name_of(key)}' in initial is no coordinate, rate or speed{nearest(name_of(key), known)}\nhint: {', '.join(known)}")
-            if of in given and given[of] != written and (float_of(written) is None or float_of(given[of]) != float_of(written)):
-                raise ModelError(
-                    f"initial gives {of} two values, {given[of]} and {written}\nhint: a speed that is the rate of a coordinate has one value with it"
-                )
-            given[of] = written
-        return given, conditions
-
-    def _value(self, value: Any, key: Any) -> str:
-        """Returns a number or a formula of SymPy as text."""
-        try:
-            return self.writer.formula(value) if isinstance(value, self.sm.Basic) else text_of(value)
-        except (TypeError, ValueError) as mistake:
-            raise mistake if isinstance(mistake, ModelError) else type(mistake)(f"{name_of(key)}: {mistake}") from None
+        return "\n".join([*lines, *initial_lines]) + "\n"

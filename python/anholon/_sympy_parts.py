@@ -6,9 +6,7 @@ expression whose rate is a given velocity.
 
 from __future__ import annotations
 
-import importlib
 import random
-import re
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -16,16 +14,9 @@ from typing import Any
 
 from ._errors import ModelError
 from ._numbers import text_of
+from ._sympy_plain import mechanics_module, name_of, plain, real, sympy_module
 
 _LONGEST = 1000  # the most operations of a velocity whose integral is looked for: expanding the 1600 of a rolling disc takes minutes
-
-
-def sympy_module() -> Any:
-    return importlib.import_module("sympy")
-
-
-def mechanics_module() -> Any:
-    return importlib.import_module("sympy.physics.mechanics")
 
 
 def is_particle(body: Any) -> bool:
@@ -119,8 +110,8 @@ def names_in(parts: Parts) -> set[str]:
         frames += [f for f in frame._dcm_dict if f not in known]
         known.update(frame._dcm_dict)
     found += [x for vector in vectors for matrix, _ in vector.args for x in matrix]
-    atoms = set().union(*(e.free_symbols | e.atoms(sm.core.function.AppliedUndef) for e in map(sm.sympify, found)))
-    return {str(a.func) if a.args else str(a) for a in atoms - {mechanics_module().dynamicsymbols._t, *parts.q, *parts.u, *parts.auxiliary}}
+    atoms = set().union(*(e.free_symbols | e.atoms(sm.core.function.AppliedUndef) for e in map(plain, found)))
+    return {name_of(a) for a in atoms - {mechanics_module().dynamicsymbols._t, *parts.q, *parts.u, *parts.auxiliary}}
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -185,11 +176,11 @@ def _parts_of_lagrange(method: Any) -> Parts:
     # The velocity constraints of a LagrangesMethod begin with the rates of the holonomic ones.
     every = [] if method.coneqs is None or len(method.coneqs) == 0 else list(method.coneqs)
     parts = Parts(method.inertial, list(method.q), [], [], list(method.bodies or []), list(method.loads or []), holonomic, every[len(holonomic) :])
-    energy = real(method._L[0] if isinstance(method._L, sm.MatrixBase) else method._L)
+    energy = plain(method._L[0] if isinstance(method._L, sm.MatrixBase) else method._L)
     if parts.frame is not None and parts.bodies:
-        potential = real(sum((body.potential_energy for body in parts.bodies), sm.Integer(0)))
-        kinetic = sum((body.kinetic_energy(parts.frame) for body in parts.bodies), sm.Integer(0))
-        inertias = [sm.sympify(x) for body in parts.bodies for x in _inertias_of(body)]
+        potential = plain(sum((body.potential_energy for body in parts.bodies), sm.Integer(0)))
+        kinetic = plain(sum((body.kinetic_energy(parts.frame) for body in parts.bodies), sm.Integer(0)))
+        inertias = [plain(x) for body in parts.bodies for x in _inertias_of(body)]
         if not any(x.has(q.diff(time)) for x in inertias for q in parts.q) and vanish([energy - kinetic + potential], {}):
             parts.by_energies = True
             # The potential of a charge in a magnetic field depends on velocities, so its force has a time derivative, too.
@@ -206,16 +197,6 @@ def atoms_of(expressions: Iterable[Any]) -> list[Any]:
     for e in expressions:
         atoms |= e.atoms(sm.Derivative) | e.atoms(sm.core.function.AppliedUndef) | e.free_symbols
     return sorted(atoms, key=str)
-
-
-def real(e: Any) -> Any:
-    """Returns an expression without re, im and conjugate, as all symbols and functions of time are real. SymPy brings them in when it
-    differentiates Abs(x)."""
-    sm = sympy_module()
-    if not e.has(sm.re, sm.im, sm.conjugate):
-        return e
-    plain = e.replace(lambda z: isinstance(z, (sm.re, sm.conjugate)), lambda z: z.args[0]).replace(sm.im, lambda _: sm.Integer(0))
-    return plain.doit()
 
 
 def numeric(arguments: Iterable[Any], what: Any) -> Any:

@@ -9,7 +9,8 @@ import random
 from collections.abc import Callable
 from typing import Any
 
-from ._sympy_parts import numeric, sympy_module
+from ._sympy_parts import numeric
+from ._sympy_plain import plain, sympy_module
 
 Formula = Callable[[Any], str]
 
@@ -35,7 +36,7 @@ def factors_between(frame: Any, other: Any) -> list[Any]:
                 queue.append(there)
     found: list[Any] = []
     while before.get(other) is not None:
-        found.insert(0, before[other]._dcm_dict[other])
+        found.insert(0, before[other]._dcm_dict[other].applyfunc(plain))
         other = before[other]
     return found
 

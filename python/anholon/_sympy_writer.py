@@ -8,7 +8,8 @@ from typing import Any
 
 from ._errors import ModelError
 from ._numbers import text_of
-from ._sympy_parts import mechanics_module, Parts, sympy_module
+from ._sympy_parts import Parts
+from ._sympy_plain import is_other_time, mechanics_module, not_the_time, symbol_of, sympy_module
 
 _SAME = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sign"}
 _RECIPROCAL = {"cot": "tan", "sec": "cos", "csc": "sin", "coth": "tanh", "sech": "cosh", "csch": "sinh"}
@@ -68,14 +69,16 @@ class Writer:
                 return self.formula(e)
             except ModelError as mistake:
                 raise ModelError(f"{place}: {mistake}") from None
-        e = sm.sympify(e)
+        e = symbol_of(sm.sympify(e))
         if e in self.names:
             return self.names[e]
         if isinstance(e, sm.Derivative):
             inner, (variable, order) = e.args[0], e.args[1]
             if len(e.args) == 2 and variable == self.time and (inner in self.names or inner.args == (self.time,)):
                 return self.formula(inner) + "'" * int(order)
-            raise ModelError(f"the derivative {e} is not one by the time of a coordinate or a given function\nhint: e.doit() works derivatives out")
+            if (worked := e.doit()) != e:
+                return self.formula(worked)
+            raise ModelError(f"the derivative {e} is not one by the time of a coordinate or a given function\nhint: put a formula in its place")
         if e == self.time:
             return "t"
         if e is sm.pi:
@@ -97,6 +100,9 @@ class Writer:
         if isinstance(e, sm.Symbol):
             return self.parameters.get(e) or self._parameter(e)
         if isinstance(e, sm.core.function.AppliedUndef):
+            if any(map(is_other_time, e.free_symbols)):
+                other = next(filter(is_other_time, e.free_symbols))
+                raise ModelError(f"{e} is no function of the time: {not_the_time(other)}\nhint: put me.dynamicsymbols._t in its place in the system")
             if e.args != (self.time,):
                 why = ", as delays have no counterpart in a model" if not any(x.atoms(sm.core.function.AppliedUndef) for x in e.args) else ""
                 raise ModelError(
@@ -181,8 +187,3 @@ class Writer:
     def _parameter(self, symbol: Any) -> str:
         self.parameters[symbol] = name = self.new(symbol.name)
         return name
-
-
-def name_of(key: Any) -> str:
-    """Returns the name of a symbol or of a function of time, without its argument; a text stays."""
-    return str(key.func) if getattr(key, "args", ()) else str(key)

@@ -31,8 +31,11 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
         method: the object of SymPy.
         title: the title of the model.
         values: values of symbols and of given functions of time, by symbol or name: numbers, texts or formulas of SymPy. All symbols need
-            values. A function without a value stays in the equations, and the model cannot be simulated.
-        initial: values of coordinates, their rates and generalized speeds, by symbol or name (``"q1'"``), in the same forms.
+            values. A function without a value stays in the equations, and the model cannot be simulated. Functions, and symbols, that
+            occur in loads and potentials alone may have formulas of coordinates, rates and speeds, such as the law of a controller,
+            ``{F: -4*q - u}``. Entries of matrices with constant indices, ``K[0, 1]``, are symbols.
+        initial: values of coordinates, their rates and generalized speeds, by symbol or name (``"q1'"``), in the same forms. Formulas may
+            hold other coordinates, rates and speeds; such a formula is a condition of the start.
 
     Returns:
         A model; ``model.text`` is its file. Coordinates and parameters keep their names if the model language allows them.
@@ -40,12 +43,14 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
     Raises:
         ModelError: a part of the system has no counterpart in a model; a load depends on a force along an auxiliary speed that the
             auxiliary equations do not determine; the system has no symbol or function of a name in `values`, or no
-            coordinate, rate or speed of a key of `initial`.
+            coordinate, rate or speed of a key of `initial`; a formula of coordinates or speeds is given for a symbol or function in a mass,
+            an inertia, a position, a velocity or a constraint.
         TypeError: `method` is another object; `values` or `initial` is no mapping.
 
     Warns:
         UserWarning: an acceleration was set that is not the rate of the velocity of its point; acceleration constraints are not the
-            rates of the velocity constraints; a body that turns in space has moments of inertia that no body can have.
+            rates of the velocity constraints; a body that turns in space has moments of inertia that no body can have; a symbol has the
+            name of the time, but other assumptions, and a number as its value.
 
     Example:
         >>> import anholon as an, sympy as sm
