@@ -13,7 +13,7 @@ from checking import run, tree
 
 # Subfolders of a layer are layers themselves: "modelfile/text" is src/modelfile/text/.
 LEVEL = {
-    "base": 0, "base/platform": 0.1, "numeric/random": 0.9, "numeric": 1, "expr": 2, "print": 2.2, "formula": 2.5, "tape": 3, "model": 4,
+    "base": 0, "base/platform": 0.1, "numeric/random": 0.9, "numeric": 1, "expr": 2, "expr/derivatives": 2.1, "print": 2.2, "formula": 2.5, "tape": 3, "model": 4,
     "modelfile/language": 5, "modelfile/text": 5.1, "modelfile/names": 5.2, "modelfile/mechanical": 5.3,
     "modelfile/motion": 5.4, "modelfile/check": 5.5, "modelfile": 5.6, "mechanics": 5.7,
     "formulation": 6, "formulation/forms/multipliers": 6.1, "formulation/forms/coordinates": 6.1,

@@ -78,6 +78,19 @@ class _Library:
         return out
 
 
+class _DifferentiatedLibrary(_Library):
+    """A library that differentiates all that it computes: both values of a choice, and roots at 0."""
+
+    def root_of_squares(self, u: Any, r: Any = None) -> Any:
+        """Returns sqrt(u), or u**r for 0 < r < 1, of a sum of squares; its derivative at u = 0 is 0.
+
+        By the rules it is 0/0 there, although formulas such as the drag |v| v have a derivative at rest.
+        """
+        zero = u == 0
+        positive = self.where(zero, 1.0, u)
+        return self.where(zero, 0.0, self.sqrt(positive) if r is None else positive**r)
+
+
 class _ExactNumbers(ast.NodeTransformer):
     """Replaces 0.5 by _number("0.5")."""
 
@@ -216,7 +229,7 @@ class Formulas:
         import jax
         import jax.numpy as jnp
 
-        library = _Library(jnp, {}, jnp.where)
+        library = _DifferentiatedLibrary(jnp, {}, jnp.where)
 
         def stack(rows: Sequence[Any], x: Any) -> Any:
             return jnp.stack([jnp.broadcast_to(row, x.shape[1:]) for row in rows]) if rows else jnp.empty((0, *x.shape[1:]))
@@ -261,7 +274,7 @@ class Formulas:
             solved = casadi.solve(r, q.T @ b)
             return solved + casadi.solve(r, q.T @ (b - a @ solved))
 
-        library = _Library(casadi, _SHORT | {"abs": "fabs"}, casadi.if_else)
+        library = _DifferentiatedLibrary(casadi, _SHORT | {"abs": "fabs"}, casadi.if_else)
         rates, outputs = self.evaluate(library, solve, t, x, u, p)
         return casadi.Function(name, [t, x, u, p], [casadi.vertcat(*rates), casadi.vertcat(*outputs)], ["t", "x", "u", "p"], ["dx", "y"])
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "expr/derivatives/point_gradient.h"
 #include "numeric/linear.h"
 
 namespace anholon {
@@ -18,7 +19,7 @@ RateDerivatives::RateDerivatives(const RateFormulas& f, const RateFormulas::Symb
   Column rows = f.equations, partials;
   for (const Column* es : {&f.rates, &f.outputs}) rows.insert(rows.end(), es->begin(), es->end());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Column d = gradient(rows[i], columns_);
+    const Column d = point_gradient(rows[i], columns_, AtKinks::no_value);
     for (std::size_t c = 0; c < d.size(); ++c)
       if (!is_zero(d[c])) partials.push_back(d[c]), partials_.push_back({i, c});
   }

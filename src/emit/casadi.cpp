@@ -5,6 +5,7 @@
 #include "emit/rate_formulas.h"
 #include "emit/straight_line.h"
 #include "emit/text.h"
+#include "expr/derivatives/point_gradient.h"
 #include "numeric/number.h"
 
 namespace anholon {
@@ -265,7 +266,7 @@ static int $_leading(double t, const double *x, const double *u, const double *p
     Partials out;
     for (Expr e : es) {
       out.place.emplace_back();
-      for (Expr d : gradient(e, by)) {
+      for (Expr d : point_gradient(e, by, AtKinks::between)) {
         out.place.back().push_back(is_zero(d) ? -1 : static_cast<std::ptrdiff_t>(out.es.size()));
         if (!is_zero(d)) out.es.push_back(d);
       }

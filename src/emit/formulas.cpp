@@ -22,10 +22,19 @@ std::string tuple(const std::string& name, const std::vector<double>& list) {
   return out + ")\n";
 }
 
+constexpr const char* kRoot = R"(
+
+def _root(np, u, r=None):
+    """sqrt(u), or u**r, of a sum of squares u. A library that differentiates may have root_of_squares(u, r), whose
+    derivatives are numbers at u = 0, too."""
+    own = getattr(np, "root_of_squares", None)
+    return own(u, r) if own else np.sqrt(u) if r is None else u**r
+)";
+
 class FormulaModule {
  public:
   explicit FormulaModule(const RateFormulas& f)
-      : f_(f), names_(f), writer_(*f.model->graph, names_, Language::python) {}
+      : f_(f), names_(f), writer_(*f.model->graph, names_, Language::python, RootsOfSquares::of_library) {}
 
   std::string text() {
     std::string out = "\"\"\"" + code_string(f_.title.empty() ? "A motion" : f_.title) + "\n" + R"(
@@ -56,7 +65,7 @@ equations() takes lead, too, and the solution is Newton's correction of it.
     if (f_.u.size() > 0 && !f_.input_formulas.empty())
       out += "\n\ndef inputs(np, t, x, p):\n    \"\"\"u by the formulas of the model.\"\"\"\n" +
              list("out", f_.input_formulas) + "    return out\n";
-    return out;
+    return out.find("_root(np, ") == std::string::npos ? out : out + kRoot;
   }
 
  private:

@@ -4,6 +4,7 @@
 
 #include "base/assert.h"
 #include "emit/text.h"
+#include "expr/derivatives/squares.h"
 
 namespace anholon::emit {
 
@@ -41,7 +42,10 @@ std::string Writer::fresh() {
 Writer::Text Writer::power(NodeId base, const Rational& exponent) const {
   const Text& x = text_.at(base);
   if (exponent == 1) return x;
-  const Text root{std::string(language_ == Language::c ? "sqrt(" : "np.sqrt(") + x.s + ")", kAtom};
+  const bool of_library =
+      roots_ == RootsOfSquares::of_library && !exponent.is_integer() && exponent > 0 && is_sum_of_squares(g_, base);
+  const std::string begin = of_library ? "_root(np, " : language_ == Language::c ? "sqrt(" : "np.sqrt(";
+  const Text root{begin + x.s + ")", kAtom};
   if (exponent == Rational(1, 2)) return root;
   if (exponent == Rational(3, 2)) return {wrapped(x, kAtom) + "*" + root.s, kProduct};
   if (exponent.is_integer() && exponent <= kLargestProduct) {
@@ -50,6 +54,7 @@ Writer::Text Writer::power(NodeId base, const Rational& exponent) const {
     return {out, kProduct};
   }
   const std::string e = number(exponent);
+  if (of_library && exponent < 1) return {begin + x.s + ", " + e + ")", kAtom};
   if (language_ == Language::c) return {"pow(" + x.s + ", " + e + ")", kAtom};
   return {wrapped(x, kAtom) + "**" + (e.find('/') == std::string::npos ? e : "(" + e + ")"), kPower};
 }

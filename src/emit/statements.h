@@ -13,6 +13,9 @@
 namespace anholon::emit {
 
 enum class Language : std::uint8_t { c, python };
+// The function for roots of sums of squares, whose derivative at 0 is no number: that of the language, or _root(np, u, r)
+// of the module, by which a library can have its own.
+enum class RootsOfSquares : std::uint8_t { plain, of_library };
 
 // The statements of one function. `$` marks the place of the prefix of names in C. A node that is used more than once,
 // or is long, gets a variable.
@@ -25,8 +28,8 @@ struct Statements {
 
 class Writer {
  public:
-  Writer(const Graph& graph, const LocalNames& names, Language language)
-      : g_(graph), names_(names), language_(language) {}
+  Writer(const Graph& graph, const LocalNames& names, Language language, RootsOfSquares roots = RootsOfSquares::plain)
+      : g_(graph), names_(names), language_(language), roots_(roots) {}
   // Writes targets[i] = es[i], after the variables; structural zeros are left out if `sparse`.
   Statements body(const Column& es, const std::vector<std::string>& targets, bool sparse = false);
   bool used_sign() const { return used_sign_; }
@@ -70,6 +73,7 @@ class Writer {
   const Graph& g_;
   const LocalNames& names_;
   Language language_;
+  RootsOfSquares roots_;
   std::unordered_map<NodeId, Text> text_;
   std::unordered_map<NodeId, std::size_t> uses_;
   std::map<std::pair<NodeId, Rational>, std::size_t> power_uses_;  // uses of roots and reciprocals

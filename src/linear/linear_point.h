@@ -1,10 +1,13 @@
 // A point of a motion at which it is linearized.
 #pragma once
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "base/assert.h"
 #include "linear/varied_equations.h"
 #include "tape/bind.h"
+#include "tape/operands.h"
 
 namespace anholon {
 
@@ -56,7 +59,8 @@ class LinearPoint {
     });
   }
 
-  // Computes the values of all equations and the partial derivatives; returns false if a formula has no value here.
+  // Computes the values of all equations and the partial derivatives. Returns false if an equation has no value or no
+  // derivative here; outputs may have none.
   bool evaluate() {
     set(machine_);
     machine_.evaluate();
@@ -68,8 +72,27 @@ class LinearPoint {
       jacobian(l_.partials[p].row, l_.partials[p].column) = machine_.value(all + p);
     const auto good = [](const Multi& v) { return v.finite(); };
     return std::all_of(residual.begin(), residual.end(), good) &&
-           std::all_of(jacobian.data.begin(), jacobian.data.end(), good);
+           std::all_of(jacobian.data.begin(),
+                       jacobian.data.begin() + static_cast<std::ptrdiff_t>(l_.rows.size() * jacobian.cols), good);
   }
+
+  // A value or a derivative that is no number.
+  struct Fault {
+    std::size_t row;                    // of an equation, or, after these, of an output
+    std::optional<std::size_t> column;  // of the derivative; nullopt: the value has none
+    std::uint32_t slot;                 // the formula of the tape that has no value, from ones that have values
+  };
+  // Returns the first fault of these rows, values before derivatives. REQUIRES: evaluate() was called here.
+  std::optional<Fault> fault(std::size_t from, std::size_t to) const {
+    for (std::size_t r = from; r < to; ++r)
+      if (!machine_.value(r).finite()) return Fault{r, std::nullopt, origin(l_.tape.roots[r])};
+    const std::size_t all = l_.rows.size() + l_.signals.y.size();
+    for (std::size_t p = 0; p < l_.partials.size(); ++p)
+      if (const auto& [row, column] = l_.partials[p]; row >= from && row < to && !machine_.value(all + p).finite())
+        return Fault{row, column, origin(l_.tape.roots[all + p])};
+    return std::nullopt;
+  }
+  double value(std::uint32_t slot) const { return to_double(machine_.series(slot)[0]); }
 
   // Chooses the entries of the state that follow from the others: level by level, from positions to velocities and on,
   // so that a velocity is dependent if its coordinate is. Returns false if the hidden constraints are not independent
@@ -184,6 +207,21 @@ class LinearPoint {
   Node node(std::size_t e) const {
     const auto& entry = l_.entries[e];
     return l_.scenario.system.symbol_node(entry.variable, static_cast<unsigned>(entry.order));
+  }
+  // Returns the slot from which the value of this one is no number: its operands have values.
+  std::uint32_t origin(std::uint32_t slot) const {
+    for (std::optional<std::uint32_t> next = slot; next;) {
+      slot = *std::exchange(next, std::nullopt);
+      const Instruction& in = l_.tape.code[slot];
+      const auto descend = [&](std::uint32_t operand) {
+        if (!machine_.series(operand)[0].finite()) next = operand;
+      };
+      if (in.op == Op::select && machine_.series(in.first)[0].finite())
+        descend(machine_.series(in.first)[0] < Multi(0) ? in.b : in.a);
+      else
+        for_each_operand(l_.tape, in, descend);
+    }
+    return slot;
   }
   std::pair<int, std::size_t> rank(std::size_t e) const {
     const auto& entry = l_.entries[e];

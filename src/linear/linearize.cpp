@@ -324,7 +324,11 @@ Linearization linearize(const ScenarioAt& scenario_at, const StateChoice& choice
   for (std::size_t k = 0; k + 1 < order.size(); ++k) {
     const LinearResult &from = out.results[order[k]], &to = out.results[order[k + 1]];
     const Rational &a = range.values[order[k]], &b = range.values[order[k + 1]];
-    if (from.outcome.ok() && to.outcome.ok() && a < b) search.crossings({a, from.model}, {b, to.model}, out);
+    if (!(a < b)) continue;
+    ++out.intervals;
+    if (!from.outcome.ok() || !to.outcome.ok()) continue;
+    ++out.searched;
+    search.crossings({a, from.model}, {b, to.model}, out);
   }
   const auto replaced = std::find_if(out.results.begin(), out.results.end(),
                                      [](const LinearResult& r) { return !r.model.replaced.empty(); });

@@ -42,6 +42,9 @@ std::string meaning(const Crossing& crossing);
 struct Linearization {
   std::vector<LinearResult> results;
   std::vector<Crossing> crossings;
+  // The intervals between neighbouring values, and those of them in which crossings were searched for: a linear model is
+  // known at both ends.
+  std::size_t intervals = 0, searched = 0;
   std::vector<std::string> notes;  // about crossings that were not found, and jumps
 };
 

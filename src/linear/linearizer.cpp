@@ -1,8 +1,8 @@
 #include "linear/linearizer.h"
 
-#include "linear/linear_point.h"
 #include "linear/steadiness.h"
 #include "linear/steady_elimination.h"
+#include "model/formula_of_slot.h"
 #include "numeric/more_digits.h"
 
 namespace anholon {
@@ -28,7 +28,7 @@ Outcome Linearizer::look_for_kinks(const LinearPoint& point, const std::vector<M
       if (a.finite() && b.finite() && !(abs(Multi(a - b)) > part * (Multi(1) + abs(a) + abs(b)))) continue;
       const std::size_t row = k < rows ? k : equations_.sides.partials()[k - rows].row;
       if (row >= equations_.rows.size()) {
-        rough[row - equations_.rows.size()] = where;
+        rough[row - equations_.rows.size()] = "a kink or a jump at this state, " + where;
         continue;
       }
       return {OutcomeKind::not_a_number,
@@ -42,12 +42,43 @@ Outcome Linearizer::look_for_kinks(const LinearPoint& point, const std::vector<M
   return {};
 }
 
+// Names the formula for which the equations have no derivative at the point.
+Outcome Linearizer::without_derivative(const LinearPoint& point) const {
+  const auto fault = point.fault(0, equations_.rows.size());
+  if (!fault) return {OutcomeKind::not_a_number, "the equations have no value at this state", "choose another state"};
+  const std::string equation = equations_.scenario.system.equation_names[equations_.rows[fault->row].first];
+  return {OutcomeKind::not_a_number,
+          "the equation of " + equation + " has " + lacking(*fault) + " at this state: " + formula_of(point, *fault),
+          "linearize at another state, --about state with other initial values, or make the formula smooth there"};
+}
+
+// Marks outputs that have no value or no derivative at the point.
+void Linearizer::look_for_lacking_outputs(const LinearPoint& point, std::vector<std::string>& rough) const {
+  for (std::size_t o = 0; o < rough.size(); ++o) {
+    const std::size_t row = equations_.rows.size() + o;
+    if (const auto fault = point.fault(row, row + 1); fault && rough[o].empty())
+      rough[o] = lacking(*fault) + " at this state: " + formula_of(point, *fault);
+  }
+}
+
+std::string Linearizer::lacking(const LinearPoint::Fault& fault) const {
+  if (!fault.column) return "no value";
+  const std::size_t e = *fault.column, entries = equations_.entries.size();
+  return "no derivative by " + (e < entries ? equations_.entry_name(e) : equations_.signals.inputs[e - entries]);
+}
+
+std::string Linearizer::formula_of(const LinearPoint& point, const LinearPoint::Fault& fault) const {
+  const Model& model = *equations_.scenario.model;
+  const auto value = [&](std::uint32_t s) { return point.value(s); };
+  return fault.row < equations_.rows.size() ? without_value(equations_.tape, model, fault.slot, value).message
+                                            : message_without_value(equations_.tape, model, fault.slot, value);
+}
+
 // Removes outputs without a derivative at the point.
 static void leave_out(const std::vector<std::string>& rough, LinearModel& m) {
   for (std::size_t o = rough.size(); o-- > 0;) {
     if (rough[o].empty()) continue;
-    m.notes.push_back("the output '" + m.outputs[o] + "' has a kink or a jump at this state, " + rough[o] +
-                      "; it is left out");
+    m.notes.push_back("the output '" + m.outputs[o] + "' has " + rough[o] + "; it is left out");
     m.outputs.erase(m.outputs.begin() + static_cast<std::ptrdiff_t>(o));
     for (Matrix<Multi>* of : {&m.C, &m.D}) {
       Matrix<Multi> fewer(of->rows - 1, of->cols);
@@ -74,12 +105,14 @@ Outcome Linearizer::at(const std::vector<Multi>& parameters, const InitialState<
   LinearPoint point(equations_, choice_.eliminate.empty() ? equations_.scenario.model->dependent : choice_.eliminate,
                     parameters);
   point.load(state);
-  if (!point.evaluate())
-    return {OutcomeKind::not_a_number, "a derivative of the equations has no value at this state",
-            "choose another state"};
-  if (!point.choose() || !point.settle()) return singular;
   std::vector<std::string> rough(equations_.signals.y.size());
+  if (!point.evaluate()) {
+    if (Outcome o = look_for_kinks(point, parameters, rough); !o.ok()) return o;
+    return without_derivative(point);
+  }
+  if (!point.choose() || !point.settle()) return singular;
   if (Outcome o = look_for_kinks(point, parameters, rough); !o.ok()) return o;
+  look_for_lacking_outputs(point, rough);
   point.linear(out);
   out.replaced = state.replaced.note;
   if (!out.replaced.empty()) out.notes.push_back(out.replaced);

@@ -1,5 +1,7 @@
 #include "linear/varied_equations.h"
 
+#include "expr/derivatives/point_gradient.h"
+
 namespace anholon {
 
 VariedEquations::VariedEquations(Workspace& of, Signals wanted) : scenario(of), signals(std::move(wanted)) {
@@ -50,7 +52,7 @@ VariedEquations::VariedEquations(Workspace& of, Signals wanted) : scenario(of), 
   const std::size_t values = es.size();
   sides = {es, columns, scenario.model->parameters.size()};
   for (std::size_t r = 0; r < values; ++r) {
-    const Column d = gradient(es[r], columns);
+    const Column d = point_gradient(es[r], columns, AtKinks::no_value);
     for (std::size_t c = 0; c < d.size(); ++c) {
       if (is_zero(d[c])) continue;
       partials.push_back({r, c});

@@ -142,22 +142,30 @@ std::string in_element(const Tape& tape, const Model& model, std::uint32_t slot,
   return {};
 }
 
+std::string message(const Tape& tape, const Model& model, std::uint32_t slot, const Described& d,
+                    const std::string& place, const std::function<double(std::uint32_t)>& value) {
+  std::string out = d.formula + place + (std::isfinite(value(slot)) ? " has no derivatives" : " has no value");
+  if (d.argument == slot) return out;
+  const std::string argument = short_text(tape, model, d.argument);
+  return argument.empty() ? out : out + ", where " + argument + " = " + number_text(value(d.argument), 6);
+}
+
 }  // namespace
+
+std::string message_without_value(const Tape& tape, const Model& model, std::uint32_t slot,
+                                  const std::function<double(std::uint32_t)>& value) {
+  return message(tape, model, slot, described(tape, model, slot), "", value);
+}
 
 Outcome without_value(const Tape& tape, const Model& model, std::uint32_t slot,
                       const std::function<double(std::uint32_t)>& value) {
   const Described d = described(tape, model, slot);
-  std::string message = d.formula + in_element(tape, model, slot, d.argument) +
-                        (std::isfinite(value(slot)) ? " has no derivatives" : " has no value");
-  if (d.argument != slot) {
-    const std::string argument = short_text(tape, model, d.argument);
-    if (!argument.empty()) message += ", where " + argument + " = " + number_text(value(d.argument), 6);
-  }
+  std::string text = message(tape, model, slot, d, in_element(tape, model, slot, d.argument), value);
   if (!power_of_log(tape, model, slot).empty())
-    return {OutcomeKind::not_a_number, std::move(message),
+    return {OutcomeKind::not_a_number, std::move(text),
             "a power has a value at and below 0 only if its exponent is a fixed whole number: write abs(x)^n*sign(x) "
             "for an odd power of any sign of x, abs(x)^n for an even one"};
-  return {OutcomeKind::not_a_number, std::move(message),
+  return {OutcomeKind::not_a_number, std::move(text),
           "start or stop the motion away from this point, or change the formula so that it is smooth here"};
 }
 

@@ -14,4 +14,8 @@ namespace anholon {
 Outcome without_value(const Tape& tape, const Model& model, std::uint32_t slot,
                       const std::function<double(std::uint32_t)>& value);
 
+// Returns the message alone, without the element: for a formula of its own, such as that of an output.
+std::string message_without_value(const Tape& tape, const Model& model, std::uint32_t slot,
+                                  const std::function<double(std::uint32_t)>& value);
+
 }  // namespace anholon

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "expr/derivatives/point_gradient.h"
+
 namespace anholon {
 
 static Tape compiled(const Mechanics& m, const std::vector<StageEquation>& equations, const Column& unknowns,
@@ -10,7 +12,7 @@ static Tape compiled(const Mechanics& m, const std::vector<StageEquation>& equat
   Column es;
   for (const StageEquation& e : equations) es.push_back(e.residual);
   for (const StageEquation& e : equations) {
-    const Column d = gradient(e.residual, unknowns);
+    const Column d = point_gradient(e.residual, unknowns, AtKinks::no_value);
     es.insert(es.end(), d.begin(), d.end());
   }
   const std::vector<NodeId> met = symbols(std::span<const Expr>(es).subspan(equations.size()));
@@ -99,18 +101,19 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
   for (std::size_t j = 0; j < n; ++j) at_[j] = *s.value(unknown(j));
   const bool stays = change != Change::all && plan_->linear && !plan_->mass_moves;
   if (!stays) elimination_.reset(), determined_.reset();
-  if (!read_equations(stays)) return false;
+  if (!read_equations(s, stays)) return false;
   if (!stays && !read_metric()) return false;
-  known_ = true;
+  known_ = !lacks_slopes_;  // the values that are given may change without an input
   return true;
 }
 
 template <Number N>
-bool Stage<N>::read_equations(bool jacobian_stays) {
+bool Stage<N>::read_equations(const InitialState<N>& s, bool jacobian_stays) {
   const std::size_t n = unknowns();
   residual.assign(size(), N(0));
   scale.assign(size(), N(0));
   floor_.assign(size(), N(0));
+  lacks_slopes_ = false;
   if (!jacobian_stays) jacobian.rows = size(), jacobian.cols = n, jacobian.data.assign(size() * n, N(0));
   N largest_unknown(1);
   for (const N& x : at_)
@@ -127,6 +130,8 @@ bool Stage<N>::read_equations(bool jacobian_stays) {
     for (std::size_t j = 0; j < n; ++j) {
       N& slope = jacobian(i, j);
       if (!jacobian_stays) slope = machine_.value(size() + i * n + j);
+      // A value that is given is held, and derivatives by it are not needed: an equilibrium has no velocities.
+      if (!is_finite(slope) && *s.origin(unknown(j)) == Origin::given) slope = N(0), lacks_slopes_ = true;
       if (!is_finite(slope)) return false;
       if (!(abs(slope) > N(0))) continue;
       if (N part = abs(N(slope * at_[j])); part > scale[i]) scale[i] = part;

@@ -118,7 +118,7 @@ class Stage {
   // The inputs that differ from those of the last evaluation.
   enum class Change : std::uint8_t { none, unknowns, all };
   Change bind_inputs(const InitialState<N>& s);
-  bool read_equations(bool jacobian_stays);
+  bool read_equations(const InitialState<N>& s, bool jacobian_stays);
   bool read_metric();
   // Sets partial derivatives to zero that are not larger than the round-off of the known inputs and of the parameters.
   void drop_round_off();
@@ -126,6 +126,7 @@ class Stage {
   std::vector<N> floor_, at_;  // the values of the unknowns
   std::vector<bool> kept_;     // the equations of the restriction; empty: all
   bool known_ = false;         // true if the numbers belong to the present inputs
+  bool lacks_slopes_ = false;  // true if a derivative by a value that is given is 0 in place of no number
   std::optional<Elimination> elimination_;
   struct Determined {
     std::vector<std::size_t> free;

@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "expr/derivatives/point_gradient.h"
+
 namespace anholon {
 
 namespace {
@@ -59,7 +61,7 @@ OneSided::OneSided(const Column& es, const Column& by, std::size_t parameters) {
   conditions_ = compile(conditions);
   Column all = replace_nodes(es, image);
   for (std::size_t row = 0; row < es.size(); ++row) {
-    const Column d = gradient(all[row], by);
+    const Column d = point_gradient(all[row], by, AtKinks::no_value);
     for (std::size_t c = 0; c < d.size(); ++c)
       if (!is_zero(d[c])) all.push_back(d[c]), partials_.push_back({row, c});
   }

@@ -271,6 +271,12 @@ void print_model(const LinearModel& m, std::optional<int> asked) {
   print_modes(m, asked);
 }
 
+const char* none_found(const Linearization& l) {
+  if (l.searched == l.intervals) return ": none between these values";
+  return l.searched == 0 ? ": not searched for, because no two neighbouring values have a linear model"
+                         : ": none between neighbouring values that have a linear model";
+}
+
 void print_range(const Scenario& s, const Linearization& l, const ParameterRange& range, int digits) {
   const std::string& parameter = s.model->parameters[range.parameter].name;
   const auto units = quantity_units(*s.model, {});
@@ -297,7 +303,7 @@ void print_range(const Scenario& s, const Linearization& l, const ParameterRange
     }
     say(stdout, "  %s\n", line.c_str());
   }
-  say(stdout, "\ncrossings of the imaginary axis%s\n", l.crossings.empty() ? ": none between these values" : "");
+  say(stdout, "\ncrossings of the imaginary axis%s\n", l.crossings.empty() ? none_found(l) : "");
   for (const Crossing& c : l.crossings)
     say(stdout, "  %s = %s%s   %s, %s\n", parameter.c_str(), text(c.value, digits).c_str(), in.c_str(),
         c.frequency > Multi(0) ? ("± " + text(c.frequency, digits) + "i").c_str() : "0", meaning(c).c_str());
