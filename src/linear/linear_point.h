@@ -167,7 +167,13 @@ class LinearPoint {
         const std::size_t row = l_.rows.size() + o;
         Multi& entry = c < n ? out.C(o, c) : out.D(o, c - n);
         entry = jacobian(row, c < n ? independent[c] : x.size() + c - n);
-        for (std::size_t i = 0; i < dependent_.size(); ++i) addmul(entry, jacobian(row, dependent_[i]), follow(i, c));
+        Multi slope = abs(entry), most(1);
+        for (std::size_t i = 0; i < dependent_.size(); ++i) {
+          addmul(entry, jacobian(row, dependent_[i]), follow(i, c));
+          slope = std::max(slope, abs(jacobian(row, dependent_[i]))), most = std::max(most, abs(follow(i, c)));
+        }
+        // An entry that vanishes is the round-off of what follows from this unknown.
+        if (!(abs(entry) > round_off(kEntryPart) * slope * most)) entry = Multi(0);
       }
     for (Matrix<Multi>* m : {&out.A, &out.B, &out.C, &out.D}) {
       const Multi nothing = round_off(kEntryPart) * largest(m->data);

@@ -74,12 +74,15 @@ void Judge<N>::estimate(const Course<N>& course, const std::vector<Expr>& quadra
   }
   if (!report.error || !report.error->lost) return;
   const ErrorReport& e = *report.error;
-  report.warnings.push_back(
-      {"no digit of " + e.lost_of + " can be trusted from t = " + number_text(*e.lost, 6) +
-           " on: the error is as large as the motion",
-       "end the motion earlier, or take a smaller tolerance, " +
-           std::string(has_many_digits<N>() ? "which more digits bring" : "with more digits where it is below 1e-15") +
-           " (--digits " + std::to_string(more_digits<N>()) + ")"});
+  std::string hint = "end the motion earlier";
+  // More digits follow a motion that grows without bound a little further, in very many steps.
+  if (report.outcome.kind != OutcomeKind::blow_up)
+    hint += ", or take a smaller tolerance, " +
+            std::string(has_many_digits<N>() ? "which more digits bring" : "with more digits where it is below 1e-15") +
+            " (--digits " + std::to_string(more_digits<N>()) + ")";
+  report.warnings.push_back({"no digit of " + e.lost_of + " can be trusted from t = " + number_text(*e.lost, 6) +
+                                 " on: the error is as large as the motion",
+                             hint});
 }
 
 template class Judge<double>;

@@ -143,5 +143,32 @@ TEST(Signals, TheRateOfAnInputIsNamed) {
   EXPECT_TRUE(linear(text(arm, "u*ex", "u")).notes.empty());
 }
 
+// A speed does not follow a force at once: its entries of D are 0, also where solutions of linear equations make them.
+TEST(Signals, AnOutputThatAnInputDoesNotMoveHasZeros) {
+  LinearRequest request;
+  request.form = find_formulation("routh");
+  request.choice.eliminate = {0, 1};
+  const auto car = test::model_of(R"toml(
+coordinates = ["x", "y", "th", "ph"]
+parameters = {v = 2, L = 1.5, m = 800, J = 500, ref = 0.2}
+frame = {B = "rotz(th)", F = "B*rotz(ph)"}
+point.A = "x*ex + y*ey"
+body = [{name = "car", mass = "m", inertia = "J", center = "A + L/2*B.x", orientation = "B"},
+        {name = "front", inertia = 5, center = "A + L*B.x", orientation = "F"}]
+constraint = [{name = "c0", equation = "dot(vel(A), B.y) = 0"}, {name = "cf", equation = "dot(vel(A + L*B.x), F.y) = 0"}]
+input = {tau = "-200*(ph - ref) - 60*ph'", drive = "500*(v - dot(vel(A), B.x))"}
+force = [{on = "front", from = "car", torque = "tau*ez"}, {on = "car", vector = "drive*B.x"}]
+output.speed = "dot(vel(A), B.x)"
+initial = {ph = 0.2, "ph'" = 0, conditions = ["dot(vel(A), B.x) = v"]}
+)toml");
+  const LinearStudy study(car, request);
+  const PrecisionScope precision(study.working_digits());
+  const Linearization l = study.compute();
+  ASSERT_TRUE(l.results[0].outcome.ok()) << l.results[0].outcome.message;
+  const LinearModel& m = l.results[0].model;
+  ASSERT_EQ(m.D.cols, 2U);
+  EXPECT_TRUE(m.D(0, 0) == Multi(0) && m.D(0, 1) == Multi(0)) << to_double(m.D(0, 0)) << ", " << to_double(m.D(0, 1));
+}
+
 }  // namespace
 }  // namespace anholon::steadiness_and_signals_test
