@@ -4,8 +4,10 @@
 #include <optional>
 
 #include "anholon/equations.h"
+#include "anholon/proof.h"
 #include "anholon/system.h"
 #include "api/run_data.h"
+#include "base/escape.h"
 #include "modelfile/contacts.h"
 #include "report/page/sections.h"
 #include "studio/answer_json.h"
@@ -133,11 +135,9 @@ class Answers::Desk {
   // Computes the motion unless it is known. Returns false if there is none; then the answer contains the reason.
   bool move(JsonWriter& json) {
     if (motion_) return true;
-    auto data = std::make_shared<v1::Model::Data>();
-    data->source = source_, data->cases = cases_, data->model = model_;
     v1::PrepareOptions prepare;
     prepare.form = model_->simulate.form.value_or("routh");
-    const auto system = v1::prepare(v1::Model(data), prepare);
+    const auto system = v1::prepare(v1::Model(data_of_model()), prepare);
     if (!system) return anholon::write(json, system.error(), source_.name), false;
     v1::MotionOptions options;
     options.cancelled = end_of_motion();
@@ -173,12 +173,10 @@ class Answers::Desk {
 
   // Writes the equations of a model that has no motion, because numbers or a start are missing.
   void derive_alone(JsonWriter& json) const {
-    auto data = std::make_shared<v1::Model::Data>();
-    data->source = source_, data->cases = cases_, data->model = model_;
     v1::DeriveOptions options;
     options.form = model_->simulate.form.value_or("routh");
     if (options.form == "auto") options.form = "routh";
-    const auto equations = v1::derive(v1::Model(data), options);
+    const auto equations = v1::derive(v1::Model(data_of_model()), options);
     if (!equations) return anholon::write(json, equations.error(), source_.name);
     json.key("sections").open_array();
     section(json, "equations", "Equations of motion", "<div class=\"wide\">" + equations->mathml + "</div>");
@@ -193,12 +191,36 @@ class Answers::Desk {
 
   void prove(JsonWriter& json) {
     if (!has_model(json)) return;
-    if (!contacts(*names_).empty() || !move(json)) return;
+    if (!contacts(*names_).empty()) return;
+    JsonWriter no_motion;
+    no_motion.open_object();
+    if (!move(no_motion)) return prove_alone(json);
     add_equations();
     if (!parts().page().proof && parts().page().no_proof.empty()) parts().add_proof();
     json.key("sections").open_array();
     section(json, "proof", "Proof that the forms agree", proof_section(parts().page()));
     json.close();
+  }
+
+  // Writes the proof for a model that has no motion, form by form.
+  void prove_alone(JsonWriter& json) const {
+    const auto proof = v1::prove(v1::Model(data_of_model()));
+    if (!proof) return anholon::write(json, proof.error(), source_.name);
+    std::string text = "<p>Each form against Routh's equations, by exact algebra.</p>\n<ul>";
+    for (const v1::FormVerdict& f : proof->forms) {
+      const bool proved = f.verdict == v1::Verdict::proved, refuted = f.verdict == v1::Verdict::refuted;
+      text += "<li>" + markup_escape(f.form) + ": " +
+              (proved ? "proved equal" : (refuted ? "differs: " : "not decided: ") + markup_escape(f.detail)) + "</li>";
+    }
+    json.key("sections").open_array();
+    section(json, "proof", "Proof that the forms agree", text + "</ul>\n");
+    json.close();
+  }
+
+  std::shared_ptr<v1::Model::Data> data_of_model() const {
+    auto data = std::make_shared<v1::Model::Data>();
+    data->source = source_, data->cases = cases_, data->model = model_;
+    return data;
   }
 
   SourceText source_;

@@ -204,6 +204,9 @@ def works(studio):
     _, proof = studio.ask("prove", MODEL)
     if "confirmed" not in json.dumps(proof) and "proved" not in json.dumps(proof):
         found.append(f"prove: {str(proof)[:200]}")
+    _, proof = studio.ask("prove", MODEL.replace("[simulate]\nto = 2\n", ""))
+    if "maggi: proved equal" not in json.dumps(proof):
+        found.append(f"the proof for a model without an end of its motion: {str(proof)[:200]}")
     return found
 
 
