@@ -307,6 +307,18 @@ def actuators() -> Made:
 CASES += [bicycle, chain_of_pendulums, links_in_a_chain, lagrange_skate, actuators]
 
 
+def forces_by_auxiliary_equations(method: Any, numbers: dict[Any, Any]) -> dict[Any, Any]:
+    """Returns the formulas of forces along auxiliary speeds, which have no numbers, by SymPy's own equations for them."""
+    from sympy.core.function import AppliedUndef
+
+    equations: list[Any] = []
+    with contextlib.suppress(ValueError):  # there are no auxiliary speeds
+        equations = list(getattr(getattr(method, "eom_method", method), "auxiliary_eqs", None) or [])
+    speeds = {x for x in (*method.q, *method.u)}
+    unknown = sorted({f for e in equations for f in e.atoms(AppliedUndef)} - speeds - set(numbers), key=str)
+    return sm.solve(equations, unknown, dict=True)[0] if unknown else {}
+
+
 def accelerations_of_sympy(method: Any, made: Import, values: dict[Any, Any], state: dict[Any, Any]) -> dict[Any, float]:
     """Returns q'' at a state (coordinates, and rates by q') by SymPy's own equations, computed with 40 digits."""
     q, u, t = list(method.q), [x for x in made.parts.u], made.writer.time
@@ -321,7 +333,7 @@ def accelerations_of_sympy(method: Any, made: Import, values: dict[Any, Any], st
         for x in u:
             numbers[x] = sm.N(made.speeds[x].subs({r: numbers[r] for r in rates}).subs({k: v for k, v in numbers.items()}), 40)
 
-    solved = tuple(matrix.xreplace(made._zero) for matrix in solved)
+    solved = tuple(matrix.xreplace(made._zero).subs(forces_by_auxiliary_equations(method, numbers)) for matrix in solved)
 
     def at(e: Any) -> Any:
         return sm.N(e.subs({r: numbers[r] for r in rates}).subs(numbers), 40)
