@@ -104,10 +104,14 @@ def test_sides_that_agree_have_a_linear_model() -> None:
     assert any("the output 'distance' has a kink or a jump" in note for note in linear.notes)
 
 
-def test_a_search_for_an_equilibrium_tells_that_states_are_kept() -> None:
-    held = line("f - x' - 9.81", 'state.f = {rate = "(-50*x - f)/0.1", initial = 0}')
-    with pytest.raises(an.MotionError, match="the states keep their initial values: f "):
-        held.linearize(about="equilibrium")
+def test_a_search_for_an_equilibrium_finds_states() -> None:
+    held = line("f - x' - 9.81", 'state.f = {rate = "(-50*x - f)/0.1", initial = 0}').linearize(about="equilibrium")
+    assert held.motion == "equilibrium"
+    assert held.states == ["x", "x'", "f"]
+    np.testing.assert_allclose(held.values, [-9.81 / 50, 0, 9.81], rtol=1e-15)
+    endless = line("f - x^2 - 1", 'state.f = {rate = "1 + f^2", initial = 0}')
+    with pytest.raises(an.MotionError, match="no equilibrium was found near the initial positions\nhint: .*; so do the values of f of"):
+        endless.linearize(about="equilibrium")
 
 
 @pytest.mark.parametrize("name", ["abs", "len", "range", "matrix", "right", "sum", "zip", "enumerate", "print"])
