@@ -295,13 +295,16 @@ def test_ctrl_c_ends_a_batch_of_dynamics(ctrl_c: CtrlC, what: str) -> None:
 
 def test_ctrl_c_ends_a_proof_of_the_command() -> None:
     """The message names the forms that were compared until then, and the exit status is 1."""
-    for delay in (0.1, 0.2, 0.4, 0.8, 1.6, 3.2):
+    delay, shortest, longest = 0.1, 0.0, 0.0  # before `shortest` the proof has not begun, after `longest` it has ended
+    for _ in range(16):
         process = subprocess.Popen([os.environ["ANHOLON_PROGRAM"], "prove", "snake"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(delay)
         process.send_signal(signal.SIGINT)
         shown, said = process.communicate(timeout=60)
-        if process.returncode == -signal.SIGINT:
-            continue  # the signal came before the proof began
+        if process.returncode in (0, -signal.SIGINT):
+            shortest, longest = (delay, longest) if process.returncode else (shortest, delay)
+            delay = (shortest + longest) / 2 if longest > shortest else 2 * shortest
+            continue
         assert process.returncode == 1 and shown == ""
         told = re.match(r"stopped \(interrupted\): (\d+) of (\d+) forms were compared with Routh's equations\n((?:.+: .+\n)*)$", said)
         assert told and int(told[1]) < int(told[2]), said
@@ -312,6 +315,8 @@ def test_ctrl_c_ends_a_proof_of_the_command() -> None:
         assert not {"appell-reduced", "chaplygin", "maggi"} & set(lists.get("proved", ()))
         if lists:
             return
+        shortest = delay
+        delay = (shortest + longest) / 2 if longest > shortest else 1.5 * shortest
     raise AssertionError("no request came during the proof")
 
 
