@@ -1,9 +1,8 @@
-#include "expr/diff.h"
-
 #include <algorithm>
 #include <unordered_map>
 
 #include "base/assert.h"
+#include "expr/diff.h"
 
 namespace anholon {
 
